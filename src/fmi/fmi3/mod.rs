@@ -1,0 +1,3 @@
+//! FMI 3.0: C types and exported functions.
+
+pub mod types;

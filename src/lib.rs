@@ -1,0 +1,3 @@
+//! Magnetic levitation and magnetic bearings as FMI 2.0 and FMI 3.0 units.
+
+pub mod fmi;
