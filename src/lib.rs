@@ -1,3 +1,6 @@
 //! Magnetic levitation and magnetic bearings as FMI 2.0 and FMI 3.0 units.
 
+pub mod controller;
 pub mod fmi;
+pub mod observer;
+pub mod plant;

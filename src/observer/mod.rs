@@ -1,0 +1,3 @@
+//! State estimators, one per file.
+
+pub mod newton;

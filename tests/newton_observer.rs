@@ -1,0 +1,107 @@
+//! The shipped Newton observer against the literal algorithm of the paper.
+
+mod literal;
+
+use maglev_fmu::observer::newton::{NewtonObserver, NewtonSettings};
+use maglev_fmu::plant::magnetic_bearing::{MagneticBearing, Map, State};
+use nalgebra::{Matrix3, Vector3};
+use proptest::prelude::*;
+
+const T: f64 = 1e-3;
+
+fn vector(state: State) -> Vector3<f64> {
+    Vector3::new(state.position, state.velocity, state.flux)
+}
+
+fn state(vector: Vector3<f64>) -> State {
+    State { position: vector[0], velocity: vector[1], flux: vector[2] }
+}
+
+/// Feeds three samples to a fresh observer; the third triggers the inversion from `guess`.
+fn shipped(settings: &NewtonSettings, y: [f64; 3], u: [f64; 2], guess: State) -> State {
+    let mut observer = NewtonObserver::new(guess);
+    observer.update(settings, y[0], 0.0);
+    observer.update(settings, y[1], u[0]);
+    observer.update(settings, y[2], u[1]).state
+}
+
+/// Random state, held voltages and guess, away from the singularity at zero flux.
+fn problem() -> impl Strategy<Value = (Vector3<f64>, [f64; 2], Vector3<f64>)> {
+    (
+        (0.05..0.2f64, any::<bool>(), -0.02..0.02f64, -0.02..0.02f64),
+        [-30.0..30.0f64, -30.0..30.0f64],
+        (-0.01..0.01f64, -0.01..0.01f64, -0.01..0.01f64),
+    )
+        .prop_map(|((flux, mirrored, position, velocity), voltages, offset)| {
+            let sign = if mirrored { -1.0 } else { 1.0 };
+            // Voltages that drive the flux away from zero keep both steps on one branch of |x3|.
+            let voltages = voltages.map(|voltage: f64| sign * voltage.abs());
+            let truth = Vector3::new(position, velocity, sign * flux);
+            (truth, voltages, truth + Vector3::new(offset.0, offset.1, sign * offset.2))
+        })
+}
+
+/// (6) for any map, by composition, chain rule and a general solve.
+fn composed(settings: &NewtonSettings, y: [f64; 3], u: [f64; 2], guess: Vector3<f64>) -> Vector3<f64> {
+    let NewtonSettings { bearing, map, .. } = *settings;
+    let mut w = guess;
+    for _ in 0..settings.max_iterations {
+        let first = bearing.advance(map, state(w), u[0], T);
+        let second = bearing.advance(map, first, u[1], T);
+        let to_first = bearing.jacobian(map, w[2], u[0], T);
+        let to_second = bearing.jacobian(map, first.flux, u[1], T) * to_first;
+        let row = |matrix: &Matrix3<f64>| [matrix[(0, 0)], matrix[(0, 1)], matrix[(0, 2)]];
+        let (a, b) = (row(&to_first), row(&to_second));
+        let jacobian = Matrix3::new(1.0, 0.0, 0.0, a[0], a[1], a[2], b[0], b[1], b[2]);
+        let residual = Vector3::from(y) - Vector3::new(w[0], first.position, second.position);
+        w += settings.step_size * jacobian.lu().solve(&residual).expect("away from the singularity");
+    }
+    w
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    #[test]
+    fn paper_prints_the_composition_correctly((x, u, _) in problem(), epsilon in 0.0..1.0f64) {
+        let first = literal::printed_map(x, u[0], epsilon, T);
+        let second = literal::printed_map(first, u[1], epsilon, T);
+        let outputs = literal::outputs(x, u, epsilon, T);
+        prop_assert!((outputs - Vector3::new(x[0], first[0], second[0])).amax() < 1e-16);
+        let bearing = MagneticBearing { epsilon };
+        let advanced = vector(bearing.advance(Map::Printed, state(x), u[0], T));
+        prop_assert!((advanced - first).amax() < 1e-16);
+    }
+
+    #[test]
+    fn agrees_with_the_printed_algorithm(
+        (x, u, guess) in problem(), epsilon in 0.0..1.0f64, alpha in 0.3..1.0f64, d in 1u32..12, damped: bool,
+    ) {
+        let step_size = if damped { alpha } else { 1.0 };
+        let bearing = MagneticBearing { epsilon };
+        let settings = NewtonSettings { bearing, map: Map::Printed, sample_time: T, max_iterations: d, step_size };
+        let y: [f64; 3] = literal::outputs(x, u, epsilon, T).into();
+        let w = literal::invert(y, u, guess, d, step_size, epsilon, T).expect("away from the singularity");
+        let forward = literal::printed_map(literal::printed_map(w, u[0], epsilon, T), u[1], epsilon, T);
+        let estimate = vector(shipped(&settings, y, u, state(guess)));
+        prop_assert!((estimate - forward).amax() < 1e-9, "{estimate} {forward}");
+    }
+
+    #[test]
+    fn agrees_with_a_general_solver_on_the_exact_map(
+        (x, u, guess) in problem(), epsilon in 0.0..1.0f64, d in 1u32..12, reversed: bool,
+    ) {
+        // Reversed voltages let the flux cross zero, which only the exact map describes.
+        let u = if reversed { u.map(|voltage| -2.0 * voltage) } else { u };
+        let bearing = MagneticBearing { epsilon };
+        let map = Map::Exact;
+        let settings = NewtonSettings { bearing, map, sample_time: T, max_iterations: d, step_size: 1.0 };
+        let first = bearing.advance(map, state(x), u[0], T);
+        let second = bearing.advance(map, first, u[1], T);
+        let y = [x[0], first.position, second.position];
+        let w = composed(&settings, y, u, guess);
+        let forward = bearing.advance(map, bearing.advance(map, state(w), u[0], T), u[1], T);
+        let estimate = shipped(&settings, y, u, state(guess));
+        prop_assert!((vector(estimate) - vector(forward)).amax() < 1e-9, "{estimate:?} {forward:?}");
+    }
+}
