@@ -4,3 +4,5 @@ pub mod controller;
 pub mod fmi;
 pub mod observer;
 pub mod plant;
+pub mod signal;
+pub mod unit;

@@ -1,0 +1,24 @@
+//! Sensor resolution.
+
+/// `value` rounded to the nearest multiple of `resolution`, in the same unit; 0 is an ideal sensor.
+pub fn quantise(value: f64, resolution: f64) -> f64 {
+    if resolution == 0.0 {
+        return value;
+    }
+    let quantised = libm::rint(value / resolution) * resolution;
+    // A resolution beyond the range of the quotient cannot matter.
+    if quantised.is_finite() { quantised } else { value }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::quantise;
+
+    #[test]
+    fn rounds_to_the_grid() {
+        assert_eq!(quantise(0.12, 0.0), 0.12);
+        assert_eq!(quantise(0.8, 0.5), 1.0);
+        assert_eq!(quantise(-0.8, 0.5), -1.0);
+        assert_eq!(quantise(1.0, 1e-320), 1.0);
+    }
+}

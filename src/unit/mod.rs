@@ -1,0 +1,139 @@
+//! What is exported: per unit its variable table, and how plant, observer and law are wired and sampled.
+//! Knows nothing of FMI.
+
+pub mod description;
+mod magnetic_bearing;
+mod magnetic_bearing_controller;
+mod magnetic_bearing_plant;
+pub mod quantity;
+pub mod sample_clock;
+pub mod value;
+pub mod variable;
+
+use core::fmt;
+
+pub use description::{Description, Token};
+pub use magnetic_bearing_controller::MagneticBearingController;
+pub use magnetic_bearing_plant::MagneticBearingPlant;
+use thiserror::Error;
+
+/// Kinds of remarks a unit makes while it runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Topic {
+    /// Life cycle: initialised, terminated, reset.
+    Events,
+    /// The observer lost or regained convergence.
+    Observer,
+}
+
+/// Where remarks go. Nothing is formatted or stored unless the topic is wanted.
+pub trait Journal {
+    fn wants(&self, topic: Topic) -> bool;
+    fn note(&mut self, topic: Topic, message: fmt::Arguments<'_>);
+}
+
+/// A journal that wants nothing.
+pub struct Silence;
+
+impl Journal for Silence {
+    fn wants(&self, _: Topic) -> bool {
+        false
+    }
+
+    fn note(&mut self, _: Topic, _: fmt::Arguments<'_>) {}
+}
+
+/// Why a unit refused to run; it is left as it was before the call.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum UnitError {
+    #[error("{name} would become {value} {unit} within the step: expected a finite number")]
+    Diverged { name: &'static str, value: f64, unit: &'static str },
+}
+
+/// An exported unit: a flat array of values, indexed by value reference, and what it takes to advance them.
+///
+/// Units are plain memory: no pointers, no resources; a clone continues bit for bit like the original.
+pub trait Unit: Send {
+    fn description(&self) -> &'static Description;
+
+    /// Values by value reference; [`TIME`] is kept by the caller.
+    fn values(&self) -> &[f64];
+
+    /// Values to set; the caller has checked them with [`variable::Variable::check`].
+    fn values_mut(&mut self) -> &mut [f64];
+
+    /// Computes all calculated values and the internal state from parameters and inputs at `start_time` \[s\].
+    /// May be called again after a parameter changed, until the first [`Unit::advance`].
+    fn initialise(&mut self, start_time: f64) -> Result<(), UnitError>;
+
+    /// Lets `duration` \[s\], positive and finite, pass with the present inputs held.
+    fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError>;
+
+    /// Copy on the heap.
+    fn boxed_clone(&self) -> Box<dyn Unit>;
+}
+
+/// Value reference of the simulation time, the first row of every table.
+pub const TIME: usize = 0;
+
+/// A unit that can be made from nothing but its table.
+pub struct UnitType {
+    pub description: &'static Description,
+    pub create: fn() -> Box<dyn Unit>,
+}
+
+/// All units the shared library offers.
+pub static UNITS: &[UnitType] = &[
+    UnitType {
+        description: &magnetic_bearing_plant::DESCRIPTION,
+        create: || Box::new(MagneticBearingPlant::new()),
+    },
+    UnitType {
+        description: &magnetic_bearing_controller::DESCRIPTION,
+        create: || Box::new(MagneticBearingController::new()),
+    },
+];
+
+/// Start values of a table.
+fn start_values<const N: usize>(variables: &[variable::Variable; N]) -> [f64; N] {
+    core::array::from_fn(|reference| variables[reference].start)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use variable::{Causality, Kind};
+
+    #[test]
+    fn tables_are_consistent() {
+        for unit in UNITS {
+            let variables = unit.description.variables;
+            assert_eq!(variables[TIME].causality, Causality::Independent, "{}", unit.description.name);
+            for (reference, variable) in variables.iter().enumerate() {
+                let name = variable.name;
+                assert_eq!(
+                    unit.description.find(name).map(|(found, _)| found),
+                    Some(reference),
+                    "{name} twice"
+                );
+                assert!(!variable.description.is_empty(), "{name} has no description");
+                assert!(variable.is_calculated() || variable.check(variable.start).is_ok(), "{name} start");
+                for source in variable.initially_from {
+                    assert!(unit.description.find(source).is_some(), "{name}: unknown {source}");
+                }
+                if matches!(variable.kind, Kind::Integer) && !variable.is_calculated() {
+                    assert!(
+                        variable.range.0 >= i32::MIN.into() && variable.range.1 <= i32::MAX.into(),
+                        "{name}"
+                    );
+                }
+            }
+            assert_eq!((unit.create)().values().len(), variables.len());
+        }
+    }
+
+    #[test]
+    fn tokens_differ() {
+        assert_ne!(UNITS[0].description.token(), UNITS[1].description.token());
+    }
+}

@@ -1,0 +1,108 @@
+//! Ticks of a sampled controller at t = k * period, counted in integers.
+//!
+//! Importers accumulate rounding: t = 1.0000000000000007, h = 0.09999999999999998. The clock adds up the step
+//! sizes with a compensated sum, which stays exact to the last digit however many steps there are, and takes a
+//! tick when the time before it is over up to a millionth of a period. Ticks thus never depend on how the
+//! interval was cut into steps.
+
+/// Share of a period by which a communication point may miss a tick and still mean it.
+const TOLERANCE: f64 = 1e-6;
+
+/// Clock with integer ticks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SampleClock {
+    /// \[s\]
+    period: f64,
+    /// Time since t = 0 \[s\] as an unevaluated sum of a large and a small part.
+    elapsed: (f64, f64),
+    /// Number k of the next tick.
+    next: i64,
+}
+
+impl SampleClock {
+    /// A clock that stands at `start_time` \[s\]; its first tick is the first k with k * `period` >= start.
+    pub fn new(period: f64, start_time: f64) -> Self {
+        let mut clock = Self { period, elapsed: (start_time, 0.0), next: 0 };
+        clock.next = clock.first_tick_not_before_now();
+        clock
+    }
+
+    /// Lets `duration` \[s\] pass and returns the numbers of the ticks in it, its start included, its end not.
+    #[inline]
+    pub fn advance(&mut self, duration: f64) -> core::ops::Range<i64> {
+        // Two-sum of Knuth: `sum + error` is exactly `large + addend`.
+        let (large, small) = self.elapsed;
+        let addend = duration + small;
+        let sum = large + addend;
+        let virtual_addend = sum - large;
+        let error = (large - (sum - virtual_addend)) + (addend - virtual_addend);
+        self.elapsed = (sum, error);
+        let first = self.next;
+        self.next = self.first_tick_not_before_now().max(first);
+        first..self.next
+    }
+
+    /// Time of tick `k` \[s\].
+    pub fn time_of(&self, k: i64) -> f64 {
+        k as f64 * self.period
+    }
+
+    #[inline]
+    fn first_tick_not_before_now(&self) -> i64 {
+        let periods = (self.elapsed.0 + self.elapsed.1) / self.period;
+        // The quotient itself is only good to some last digits; this matters beyond 1e9 periods.
+        let tolerance = TOLERANCE.max(8.0 * f64::EPSILON * periods.abs());
+        // The cast saturates; 2^63 ticks are out of reach.
+        libm::ceil(periods - tolerance) as i64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn ticks_lie_in_the_half_open_interval() {
+        let mut clock = SampleClock::new(1e-3, 0.0);
+        assert_eq!(clock.advance(0.5e-3), 0..1);
+        assert_eq!(clock.advance(0.5e-3), 1..1);
+        assert_eq!(clock.advance(3.7e-3), 1..5);
+        assert_eq!(SampleClock::new(1e-3, 0.0025).advance(1e-3), 3..4);
+    }
+
+    #[test]
+    fn a_hundred_million_steps_lose_no_tick() {
+        let mut clock = SampleClock::new(1e-4, 0.0);
+        for k in 0..100_000_000 {
+            assert_eq!(clock.advance(1e-4), k..k + 1);
+        }
+    }
+
+    #[test]
+    fn sixtieths_of_a_second_meet_every_tick() {
+        let mut clock = SampleClock::new(1e-3, 0.0);
+        let mut ticks = 0;
+        for step in 1..=6_000_000i64 {
+            ticks += clock.advance(1.0 / 60.0).count() as i64;
+            // Ticks 0, 1, ... below step/60 s: ceil(1000 step / 60) in integers.
+            assert_eq!(ticks, (1000 * step + 59) / 60);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn rounding_noise_changes_nothing(
+            noise in prop::collection::vec(-3i64..=3, 2000), ratio in 0.01..7.3f64, steps_per_period in 1u32..10,
+        ) {
+            // Both an arbitrary ratio and steps that divide the period exactly.
+            for step in [1e-3 * ratio, 1e-3 / f64::from(steps_per_period)] {
+                let (mut plain, mut noisy) = (SampleClock::new(1e-3, 0.0), SampleClock::new(1e-3, 0.0));
+                for ulps in &noise {
+                    let jittered = f64::from_bits(step.to_bits().wrapping_add_signed(*ulps));
+                    prop_assert_eq!(plain.advance(step), noisy.advance(jittered));
+                }
+            }
+        }
+    }
+}

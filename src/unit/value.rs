@@ -1,0 +1,65 @@
+//! Checks that a value may be given to a variable.
+
+use super::variable::{Kind, Variable};
+use thiserror::Error;
+
+/// Why a value was refused; names the variable, the value, its unit and what was expected.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum ValueError {
+    #[error("{name} = {value} {unit}: expected a finite number")]
+    NotFinite { name: &'static str, value: f64, unit: &'static str },
+    #[error("{name} = {value} {unit}: expected {minimum} to {maximum} {unit}")]
+    OutOfRange { name: &'static str, value: f64, unit: &'static str, minimum: f64, maximum: f64 },
+    #[error("{name} = {value}: expected an item of {enumeration}, 1 to {count}")]
+    NoItem { name: &'static str, value: f64, enumeration: &'static str, count: usize },
+}
+
+impl Variable {
+    /// Whether `value` fits the variable's kind and range.
+    #[inline]
+    pub fn check(&self, value: f64) -> Result<(), ValueError> {
+        let (minimum, maximum) = self.range;
+        let name = self.name;
+        if !value.is_finite() {
+            return Err(ValueError::NotFinite { name, value, unit: self.unit() });
+        }
+        if let Kind::Enumeration(enumeration) = self.kind {
+            let count = enumeration.items.len();
+            let is_item = value.fract() == 0.0 && value >= 1.0 && value <= count as f64;
+            return if is_item {
+                Ok(())
+            } else {
+                Err(ValueError::NoItem { name, value, enumeration: enumeration.name, count })
+            };
+        }
+        if value < minimum || value > maximum {
+            return Err(ValueError::OutOfRange { name, value, unit: self.unit(), minimum, maximum });
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::unit::quantity::{DURATION, Enumeration};
+
+    static COLOUR: Enumeration =
+        Enumeration { name: "Colour", description: "", items: &[("red", ""), ("blue", "")] };
+
+    #[test]
+    fn messages_name_value_unit_and_expectation() {
+        let period = Variable::parameter("sample_time", Kind::Real(&DURATION), 1e-3).range(1e-6, 1.0);
+        assert_eq!(period.check(1e-6), Ok(()));
+        assert_eq!(period.check(0.0).unwrap_err().to_string(), "sample_time = 0 s: expected 0.000001 to 1 s");
+        assert_eq!(
+            period.check(f64::NAN).unwrap_err().to_string(),
+            "sample_time = NaN s: expected a finite number"
+        );
+        let colour = Variable::tunable("colour", Kind::Enumeration(&COLOUR), 1.0);
+        assert_eq!(colour.check(2.0), Ok(()));
+        for wrong in [0.0, 3.0, 1.5] {
+            assert!(colour.check(wrong).unwrap_err().to_string().contains("an item of Colour, 1 to 2"));
+        }
+    }
+}
