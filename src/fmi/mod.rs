@@ -1,7 +1,22 @@
 //! The C boundary: FMI 2.0 and FMI 3.0 in one shared library.
+//!
+//! Every exported function reads the same: enter the boundary (null, phase, panic), convert the arguments, act on
+//! the [`Instance`], map the error to a status and a log message. All `unsafe` of the library lives here.
 
+mod access;
+mod boundary;
+mod communication;
+mod error;
 pub mod fmi2;
 pub mod fmi3;
+mod instance;
+mod log;
+mod phase;
 mod status;
 
+pub use communication::CommunicationPoint;
+pub use error::CallError;
+pub use instance::Instance;
+pub use log::{Callback, LOG_CATEGORIES, Logger};
+pub use phase::{Function, Phase};
 pub use status::Status;

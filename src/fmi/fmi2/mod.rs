@@ -1,3 +1,13 @@
-//! FMI 2.0: C types and exported functions.
+//! FMI 2.0: C types and exported functions. Every function of the standard is exported.
 
+mod co_simulation;
+mod legality;
+mod life_cycle;
+mod not_offered;
 pub mod types;
+mod variables;
+
+pub use co_simulation::*;
+pub use life_cycle::*;
+pub use not_offered::*;
+pub use variables::*;

@@ -1,0 +1,97 @@
+//! Reading and writing variables by value reference.
+
+use super::{CallError, Instance, Phase};
+use crate::unit::variable::{Causality, Kind, Variability, Variable};
+
+/// A data type of a standard: its name there and the kinds of variables it carries.
+pub(super) struct DataType {
+    pub name: &'static str,
+    pub carries: fn(&Kind) -> bool,
+}
+
+impl Instance {
+    /// Copies the values of variables of one data type to `values`.
+    #[inline]
+    pub(super) fn get<T>(
+        &mut self,
+        data_type: &DataType,
+        references: &[u32],
+        values: &mut [T],
+        convert: impl Fn(f64) -> T,
+    ) -> Result<(), CallError> {
+        self.refresh_before_first_step()?;
+        for reference in references {
+            self.find(data_type, *reference)?;
+        }
+        let source = self.unit.values();
+        for (value, reference) in values.iter_mut().zip(references) {
+            *value = convert(source[*reference as usize]);
+        }
+        Ok(())
+    }
+
+    /// Gives values to variables of one data type; all or, when one is refused, none.
+    #[inline]
+    pub(super) fn set<T: Copy>(
+        &mut self,
+        data_type: &DataType,
+        references: &[u32],
+        values: &[T],
+        convert: impl Fn(T) -> f64,
+    ) -> Result<(), CallError> {
+        for (reference, value) in references.iter().zip(values) {
+            let variable = self.find(data_type, *reference)?;
+            require_settable(variable, self.phase)?;
+            variable.check(convert(*value))?;
+        }
+        let target = self.unit.values_mut();
+        for (reference, value) in references.iter().zip(values) {
+            target[*reference as usize] = convert(*value);
+        }
+        self.is_stale = self.phase != Phase::StepMode;
+        Ok(())
+    }
+
+    /// Calculated values follow parameters and inputs until the first step.
+    #[inline]
+    fn refresh_before_first_step(&mut self) -> Result<(), CallError> {
+        if self.is_stale && matches!(self.phase, Phase::Instantiated | Phase::InitializationMode) {
+            self.refresh()?;
+        }
+        Ok(())
+    }
+
+    #[inline]
+    fn find(&self, data_type: &DataType, reference: u32) -> Result<&'static Variable, CallError> {
+        let Some(variable) = self.variables.get(reference as usize) else {
+            return Err(CallError::UnknownReference { reference, largest: self.variables.len() - 1 });
+        };
+        if (data_type.carries)(&variable.kind) {
+            return Ok(variable);
+        }
+        Err(CallError::WrongType {
+            name: variable.name,
+            reference,
+            is: match variable.kind {
+                Kind::Real(_) => "a real variable",
+                Kind::Integer => "an integer",
+                Kind::Boolean => "a boolean",
+                Kind::Enumeration(_) => "an enumeration",
+            },
+            asked: data_type.name,
+        })
+    }
+}
+
+/// Before the first step parameters and inputs may be set, afterwards inputs and tunable parameters.
+#[inline]
+fn require_settable(variable: &Variable, phase: Phase) -> Result<(), CallError> {
+    let why = match (variable.causality, variable.variability) {
+        (Causality::Input, _) | (Causality::Parameter, Variability::Tunable) => return Ok(()),
+        (Causality::Parameter, _) if phase != Phase::StepMode => return Ok(()),
+        (Causality::Parameter, _) => "a fixed parameter",
+        (Causality::Independent, _) => "the independent variable",
+        _ => "calculated by the unit",
+    };
+    Err(CallError::NotSettable { name: variable.name, why, phase: phase.name() })
+}

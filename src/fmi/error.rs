@@ -1,0 +1,34 @@
+//! Why a call was refused. The instance is as it was before the call.
+
+use crate::unit::UnitError;
+use crate::unit::value::ValueError;
+use thiserror::Error;
+
+/// Refusal of a call; the boundary logs it after the function's name and returns [`super::Status::Error`].
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum CallError {
+    #[error("not allowed in the phase \"{0}\"")]
+    WrongPhase(&'static str),
+    #[error("the argument {0} is a null pointer")]
+    NullPointer(&'static str),
+    #[error("{argument} = {got}: expected {expected}, one value per value reference")]
+    WrongLength { argument: &'static str, got: usize, expected: usize },
+    #[error("value reference {reference} is unknown: expected 0 to {largest}")]
+    UnknownReference { reference: u32, largest: usize },
+    #[error("{name} (value reference {reference}) is {is}, not {asked}")]
+    WrongType { name: &'static str, reference: u32, is: &'static str, asked: &'static str },
+    #[error("{name} is {why} and cannot be set in the phase \"{phase}\"")]
+    NotSettable { name: &'static str, why: &'static str, phase: &'static str },
+    #[error(transparent)]
+    Value(#[from] ValueError),
+    #[error("{argument} = {value} s: expected {expected}")]
+    WrongTime { argument: &'static str, value: f64, expected: &'static str },
+    #[error("currentCommunicationPoint = {got} s does not follow the last one: expected {expected} s")]
+    TimeDoesNotFollow { got: f64, expected: f64 },
+    #[error(transparent)]
+    Unit(#[from] UnitError),
+    #[error("category number {0} is not declared in the model description: expected one of {categories}", categories = super::log::CategoryList)]
+    UnknownCategory(usize),
+    #[error("not offered by this unit: {0}")]
+    NotOffered(&'static str),
+}

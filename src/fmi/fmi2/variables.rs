@@ -1,0 +1,66 @@
+//! FMI 2.0: getting and setting variables.
+#![allow(non_snake_case, reason = "the names are the standard's")]
+
+use super::legality as may;
+use super::types::*;
+use crate::fmi::access::DataType;
+use crate::fmi::boundary::{enter, input, output};
+use crate::unit::variable::Kind;
+
+const REAL: DataType = DataType { name: "a Real", carries: |kind| matches!(kind, Kind::Real(_)) };
+const INTEGER: DataType = DataType {
+    name: "an Integer or Enumeration",
+    carries: |kind| matches!(kind, Kind::Integer | Kind::Enumeration(_)),
+};
+const BOOLEAN: DataType = DataType { name: "a Boolean", carries: |kind| matches!(kind, Kind::Boolean) };
+const STRING: DataType = DataType { name: "a String", carries: |_| false };
+
+/// A getter and a setter of one data type.
+macro_rules! accessors {
+    ($get:ident $get_rule:ident, $set:ident $set_rule:ident, $type:ty, $data_type:ident, $from:expr, $into:expr) => {
+        /// # Safety
+        /// A live handle, used by one thread at a time; both arrays hold `count` elements.
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $get(
+            component: fmi2Component,
+            references: *const fmi2ValueReference,
+            count: usize,
+            values: *mut $type,
+        ) -> fmi2Status {
+            // SAFETY: the caller's promise.
+            unsafe {
+                enter(component, &may::$get_rule, |instance| {
+                    let references = input(references, count, "vr")?;
+                    instance.get(&$data_type, references, output(values, count, "value")?, $from)
+                })
+            }
+        }
+
+        /// # Safety
+        /// A live handle, used by one thread at a time; both arrays hold `count` elements.
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $set(
+            component: fmi2Component,
+            references: *const fmi2ValueReference,
+            count: usize,
+            values: *const $type,
+        ) -> fmi2Status {
+            // SAFETY: the caller's promise.
+            unsafe {
+                enter(component, &may::$set_rule, |instance| {
+                    let references = input(references, count, "vr")?;
+                    instance.set(&$data_type, references, input(values, count, "value")?, $into)
+                })
+            }
+        }
+    };
+}
+
+accessors!(fmi2GetReal GET_REAL, fmi2SetReal SET_REAL, fmi2Real, REAL, |value| value, |value| value);
+accessors!(fmi2GetInteger GET_INTEGER, fmi2SetInteger SET_INTEGER, fmi2Integer, INTEGER,
+    |value| value as fmi2Integer, f64::from);
+accessors!(fmi2GetBoolean GET_BOOLEAN, fmi2SetBoolean SET_BOOLEAN, fmi2Boolean, BOOLEAN,
+    |value| fmi2Boolean::from(value != 0.0), |value| f64::from(u8::from(value != FMI2_FALSE)));
+// No unit has strings, so nothing is ever converted.
+accessors!(fmi2GetString GET_STRING, fmi2SetString SET_STRING, fmi2String, STRING,
+    |_| core::ptr::null(), |_| 0.0);

@@ -1,0 +1,146 @@
+//! Which function may be called when: the state descriptions of FMI 3.0.2, sections 2.3 (common), 3.2, 4.2 and 5.2.
+//! Setting and getting are allowed per variable, too: see `access.rs`.
+
+use crate::fmi::Function;
+use crate::fmi::Phase::{
+    self, ClockActivationMode, ConfigurationMode, ContinuousTimeMode, EventMode, InitializationMode,
+    Instantiated, IntermediateUpdateMode, ReconfigurationMode, StepMode, Terminated,
+};
+
+/// Super state "FMU State Settable".
+const SETTABLE: &[Phase] = &[
+    Instantiated,
+    InitializationMode,
+    ConfigurationMode,
+    ReconfigurationMode,
+    EventMode,
+    ContinuousTimeMode,
+    StepMode,
+    ClockActivationMode,
+    Terminated,
+];
+const READABLE: &[Phase] = &[
+    Instantiated,
+    InitializationMode,
+    ConfigurationMode,
+    ReconfigurationMode,
+    EventMode,
+    ContinuousTimeMode,
+    StepMode,
+    ClockActivationMode,
+    IntermediateUpdateMode,
+    Terminated,
+];
+const WRITABLE: &[Phase] = &[
+    Instantiated,
+    InitializationMode,
+    ConfigurationMode,
+    ReconfigurationMode,
+    EventMode,
+    ContinuousTimeMode,
+    StepMode,
+    ClockActivationMode,
+    IntermediateUpdateMode,
+];
+const WRITABLE_DISCRETE: &[Phase] = &[
+    Instantiated,
+    InitializationMode,
+    ConfigurationMode,
+    ReconfigurationMode,
+    EventMode,
+    StepMode,
+    ClockActivationMode,
+];
+const INITIALIZED: &[Phase] = &[EventMode, ContinuousTimeMode, StepMode, ClockActivationMode];
+const CLOCKED: &[Phase] = &[InitializationMode, EventMode, StepMode, ClockActivationMode];
+const EVALUABLE: &[Phase] = &[InitializationMode, EventMode, ContinuousTimeMode, Terminated];
+const DIFFERENTIABLE: &[Phase] = &[InitializationMode, EventMode, ContinuousTimeMode, StepMode, Terminated];
+
+pub const SET_DEBUG_LOGGING: Function = Function::new("fmi3SetDebugLogging", READABLE);
+pub const ENTER_INITIALIZATION_MODE: Function = Function::new("fmi3EnterInitializationMode", &[Instantiated]);
+pub const EXIT_INITIALIZATION_MODE: Function =
+    Function::new("fmi3ExitInitializationMode", &[InitializationMode]);
+pub const ENTER_EVENT_MODE: Function = Function::new("fmi3EnterEventMode", &[ContinuousTimeMode, StepMode]);
+pub const TERMINATE: Function = Function::new("fmi3Terminate", INITIALIZED);
+pub const RESET: Function = Function::new("fmi3Reset", SETTABLE);
+
+pub const GET_FLOAT32: Function = Function::new("fmi3GetFloat32", READABLE);
+pub const GET_FLOAT64: Function = Function::new("fmi3GetFloat64", READABLE);
+pub const GET_INT8: Function = Function::new("fmi3GetInt8", READABLE);
+pub const GET_UINT8: Function = Function::new("fmi3GetUInt8", READABLE);
+pub const GET_INT16: Function = Function::new("fmi3GetInt16", READABLE);
+pub const GET_UINT16: Function = Function::new("fmi3GetUInt16", READABLE);
+pub const GET_INT32: Function = Function::new("fmi3GetInt32", READABLE);
+pub const GET_UINT32: Function = Function::new("fmi3GetUInt32", READABLE);
+pub const GET_INT64: Function = Function::new("fmi3GetInt64", READABLE);
+pub const GET_UINT64: Function = Function::new("fmi3GetUInt64", READABLE);
+pub const GET_BOOLEAN: Function = Function::new("fmi3GetBoolean", READABLE);
+pub const GET_STRING: Function = Function::new("fmi3GetString", READABLE);
+pub const GET_BINARY: Function = Function::new("fmi3GetBinary", READABLE);
+pub const GET_CLOCK: Function = Function::new("fmi3GetClock", CLOCKED);
+pub const SET_FLOAT32: Function = Function::new("fmi3SetFloat32", WRITABLE);
+pub const SET_FLOAT64: Function = Function::new("fmi3SetFloat64", WRITABLE);
+pub const SET_INT8: Function = Function::new("fmi3SetInt8", WRITABLE_DISCRETE);
+pub const SET_UINT8: Function = Function::new("fmi3SetUInt8", WRITABLE_DISCRETE);
+pub const SET_INT16: Function = Function::new("fmi3SetInt16", WRITABLE_DISCRETE);
+pub const SET_UINT16: Function = Function::new("fmi3SetUInt16", WRITABLE_DISCRETE);
+pub const SET_INT32: Function = Function::new("fmi3SetInt32", WRITABLE_DISCRETE);
+pub const SET_UINT32: Function = Function::new("fmi3SetUInt32", WRITABLE_DISCRETE);
+pub const SET_INT64: Function = Function::new("fmi3SetInt64", WRITABLE_DISCRETE);
+pub const SET_UINT64: Function = Function::new("fmi3SetUInt64", WRITABLE_DISCRETE);
+pub const SET_BOOLEAN: Function = Function::new("fmi3SetBoolean", WRITABLE_DISCRETE);
+pub const SET_STRING: Function = Function::new("fmi3SetString", WRITABLE_DISCRETE);
+pub const SET_BINARY: Function = Function::new("fmi3SetBinary", WRITABLE_DISCRETE);
+pub const SET_CLOCK: Function = Function::new("fmi3SetClock", CLOCKED);
+
+pub const GET_NUMBER_OF_VARIABLE_DEPENDENCIES: Function =
+    Function::new("fmi3GetNumberOfVariableDependencies", SETTABLE);
+pub const GET_VARIABLE_DEPENDENCIES: Function = Function::new("fmi3GetVariableDependencies", SETTABLE);
+pub const GET_FMU_STATE: Function = Function::new("fmi3GetFMUState", SETTABLE);
+pub const SET_FMU_STATE: Function = Function::new("fmi3SetFMUState", SETTABLE);
+pub const FREE_FMU_STATE: Function = Function::new("fmi3FreeFMUState", SETTABLE);
+pub const SERIALIZED_FMU_STATE_SIZE: Function = Function::new("fmi3SerializedFMUStateSize", SETTABLE);
+pub const SERIALIZE_FMU_STATE: Function = Function::new("fmi3SerializeFMUState", SETTABLE);
+pub const DESERIALIZE_FMU_STATE: Function = Function::new("fmi3DeserializeFMUState", SETTABLE);
+pub const GET_DIRECTIONAL_DERIVATIVE: Function =
+    Function::new("fmi3GetDirectionalDerivative", DIFFERENTIABLE);
+pub const GET_ADJOINT_DERIVATIVE: Function = Function::new("fmi3GetAdjointDerivative", DIFFERENTIABLE);
+
+pub const ENTER_CONFIGURATION_MODE: Function =
+    Function::new("fmi3EnterConfigurationMode", &[Instantiated, EventMode, StepMode, ClockActivationMode]);
+pub const EXIT_CONFIGURATION_MODE: Function =
+    Function::new("fmi3ExitConfigurationMode", &[ConfigurationMode, ReconfigurationMode]);
+pub const GET_INTERVAL_DECIMAL: Function = Function::new("fmi3GetIntervalDecimal", CLOCKED);
+pub const GET_INTERVAL_FRACTION: Function = Function::new("fmi3GetIntervalFraction", CLOCKED);
+pub const GET_SHIFT_DECIMAL: Function = Function::new("fmi3GetShiftDecimal", CLOCKED);
+pub const GET_SHIFT_FRACTION: Function = Function::new("fmi3GetShiftFraction", CLOCKED);
+pub const SET_INTERVAL_DECIMAL: Function = Function::new("fmi3SetIntervalDecimal", CLOCKED);
+pub const SET_INTERVAL_FRACTION: Function = Function::new("fmi3SetIntervalFraction", CLOCKED);
+pub const SET_SHIFT_DECIMAL: Function = Function::new("fmi3SetShiftDecimal", CLOCKED);
+pub const SET_SHIFT_FRACTION: Function = Function::new("fmi3SetShiftFraction", CLOCKED);
+pub const EVALUATE_DISCRETE_STATES: Function =
+    Function::new("fmi3EvaluateDiscreteStates", &[InitializationMode, EventMode, ClockActivationMode]);
+pub const UPDATE_DISCRETE_STATES: Function = Function::new("fmi3UpdateDiscreteStates", &[EventMode]);
+
+pub const ENTER_CONTINUOUS_TIME_MODE: Function = Function::new("fmi3EnterContinuousTimeMode", &[EventMode]);
+pub const COMPLETED_INTEGRATOR_STEP: Function =
+    Function::new("fmi3CompletedIntegratorStep", &[ContinuousTimeMode]);
+pub const SET_TIME: Function = Function::new("fmi3SetTime", &[EventMode, ContinuousTimeMode]);
+pub const SET_CONTINUOUS_STATES: Function = Function::new("fmi3SetContinuousStates", &[ContinuousTimeMode]);
+pub const GET_CONTINUOUS_STATE_DERIVATIVES: Function =
+    Function::new("fmi3GetContinuousStateDerivatives", EVALUABLE);
+pub const GET_EVENT_INDICATORS: Function = Function::new("fmi3GetEventIndicators", EVALUABLE);
+pub const GET_CONTINUOUS_STATES: Function = Function::new("fmi3GetContinuousStates", EVALUABLE);
+pub const GET_NOMINALS_OF_CONTINUOUS_STATES: Function =
+    Function::new("fmi3GetNominalsOfContinuousStates", EVALUABLE);
+pub const GET_NUMBER_OF_EVENT_INDICATORS: Function =
+    Function::new("fmi3GetNumberOfEventIndicators", READABLE);
+pub const GET_NUMBER_OF_CONTINUOUS_STATES: Function =
+    Function::new("fmi3GetNumberOfContinuousStates", READABLE);
+
+pub const ENTER_STEP_MODE: Function = Function::new("fmi3EnterStepMode", &[EventMode]);
+pub const GET_OUTPUT_DERIVATIVES: Function =
+    Function::new("fmi3GetOutputDerivatives", &[StepMode, IntermediateUpdateMode, Terminated]);
+pub const DO_STEP: Function = Function::new("fmi3DoStep", &[StepMode]);
+pub const ACTIVATE_MODEL_PARTITION: Function =
+    Function::new("fmi3ActivateModelPartition", &[ClockActivationMode]);

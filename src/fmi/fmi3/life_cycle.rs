@@ -1,0 +1,175 @@
+//! FMI 3.0: version, logging, creation, initialisation, end.
+#![allow(non_snake_case, reason = "the names are the standard's")]
+
+use core::ffi::c_char;
+
+use super::legality as may;
+use super::types::*;
+use crate::fmi::boundary::{create, enter, free, input};
+use crate::fmi::instance::instantiate;
+use crate::fmi::log::{Callback, c_string, set_debug_logging};
+
+/// "3.0".
+#[unsafe(no_mangle)]
+pub extern "C" fn fmi3GetVersion() -> *const c_char {
+    c"3.0".as_ptr()
+}
+
+/// Switches log categories; no category means all.
+///
+/// # Safety
+/// As the standard demands: a live handle used by one thread at a time, `categories` with `count` C strings.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3SetDebugLogging(
+    instance: fmi3Instance,
+    logging_on: fmi3Boolean,
+    count: usize,
+    categories: *const fmi3String,
+) -> fmi3Status {
+    // SAFETY: the caller's promise.
+    unsafe {
+        enter(instance, &may::SET_DEBUG_LOGGING, |instance| {
+            set_debug_logging(
+                &mut instance.logger,
+                logging_on != FMI3_FALSE,
+                input(categories, count, "categories")?,
+            )
+        })
+    }
+}
+
+/// Makes a co-simulation instance of the unit that `token` selects; null and a log message if there is none.
+///
+/// # Safety
+/// Strings are null or end with NUL; the callbacks stay callable while the instance lives.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
+    instance_name: fmi3String,
+    token: fmi3String,
+    _resource_path: fmi3String,
+    _visible: fmi3Boolean,
+    logging_on: fmi3Boolean,
+    event_mode_used: fmi3Boolean,
+    _early_return_allowed: fmi3Boolean,
+    _required_intermediate_variables: *const fmi3ValueReference,
+    _required_intermediate_variable_count: usize,
+    environment: fmi3InstanceEnvironment,
+    log_message: Option<fmi3LogMessageCallback>,
+    _intermediate_update: Option<fmi3IntermediateUpdateCallback>,
+) -> fmi3Instance {
+    let refusal = (event_mode_used != FMI3_FALSE).then_some("event mode");
+    // SAFETY: the caller's promise.
+    let (name, token) = unsafe { (c_string(instance_name), c_string(token)) };
+    let callback = callback(log_message, environment);
+    let function = "fmi3InstantiateCoSimulation";
+    create(|| instantiate(function, name, token, callback, logging_on != FMI3_FALSE, refusal))
+}
+
+/// Not offered: returns null and logs why.
+///
+/// # Safety
+/// As [`fmi3InstantiateCoSimulation`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3InstantiateModelExchange(
+    instance_name: fmi3String,
+    token: fmi3String,
+    _resource_path: fmi3String,
+    _visible: fmi3Boolean,
+    logging_on: fmi3Boolean,
+    environment: fmi3InstanceEnvironment,
+    log_message: Option<fmi3LogMessageCallback>,
+) -> fmi3Instance {
+    // SAFETY: the caller's promise.
+    let (name, token) = unsafe { (c_string(instance_name), c_string(token)) };
+    let callback = callback(log_message, environment);
+    let function = "fmi3InstantiateModelExchange";
+    create(|| instantiate(function, name, token, callback, logging_on != FMI3_FALSE, Some("model exchange")))
+}
+
+/// Not offered: returns null and logs why.
+///
+/// # Safety
+/// As [`fmi3InstantiateCoSimulation`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3InstantiateScheduledExecution(
+    instance_name: fmi3String,
+    token: fmi3String,
+    _resource_path: fmi3String,
+    _visible: fmi3Boolean,
+    logging_on: fmi3Boolean,
+    environment: fmi3InstanceEnvironment,
+    log_message: Option<fmi3LogMessageCallback>,
+    _clock_update: Option<fmi3ClockUpdateCallback>,
+    _lock_preemption: Option<fmi3LockPreemptionCallback>,
+    _unlock_preemption: Option<fmi3UnlockPreemptionCallback>,
+) -> fmi3Instance {
+    // SAFETY: the caller's promise.
+    let (name, token) = unsafe { (c_string(instance_name), c_string(token)) };
+    let callback = callback(log_message, environment);
+    let function = "fmi3InstantiateScheduledExecution";
+    create(|| {
+        instantiate(function, name, token, callback, logging_on != FMI3_FALSE, Some("scheduled execution"))
+    })
+}
+
+fn callback(log_message: Option<fmi3LogMessageCallback>, environment: fmi3InstanceEnvironment) -> Callback {
+    log_message.map_or(Callback::None, |log_message| Callback::Fmi3(log_message, environment))
+}
+
+/// Frees an instance; null is ignored.
+///
+/// # Safety
+/// `instance` is null or a live handle, dead afterwards.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3FreeInstance(instance: fmi3Instance) {
+    // SAFETY: the caller's promise.
+    unsafe { free(instance) }
+}
+
+/// Start and stop time of the experiment \[s\]; the tolerance has no meaning for a unit solved in closed form.
+///
+/// # Safety
+/// A live handle, used by one thread at a time.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3EnterInitializationMode(
+    instance: fmi3Instance,
+    _tolerance_defined: fmi3Boolean,
+    _tolerance: fmi3Float64,
+    start_time: fmi3Float64,
+    stop_time_defined: fmi3Boolean,
+    stop_time: fmi3Float64,
+) -> fmi3Status {
+    // SAFETY: the caller's promise.
+    unsafe {
+        enter(instance, &may::ENTER_INITIALIZATION_MODE, |instance| {
+            instance.set_experiment(start_time, (stop_time_defined != FMI3_FALSE).then_some(stop_time))?;
+            instance.enter_initialization_mode()
+        })
+    }
+}
+
+/// # Safety
+/// A live handle, used by one thread at a time.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3ExitInitializationMode(instance: fmi3Instance) -> fmi3Status {
+    // SAFETY: the caller's promise.
+    unsafe { enter(instance, &may::EXIT_INITIALIZATION_MODE, |instance| instance.exit_initialization_mode()) }
+}
+
+/// # Safety
+/// A live handle, used by one thread at a time.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3Terminate(instance: fmi3Instance) -> fmi3Status {
+    // SAFETY: the caller's promise.
+    unsafe { enter(instance, &may::TERMINATE, |instance| instance.terminate()) }
+}
+
+/// Back to the state right after instantiation.
+///
+/// # Safety
+/// A live handle, used by one thread at a time.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3Reset(instance: fmi3Instance) -> fmi3Status {
+    // SAFETY: the caller's promise.
+    unsafe { enter(instance, &may::RESET, |instance| instance.reset()) }
+}

@@ -1,0 +1,170 @@
+//! FMI 3.0: getting and setting variables.
+#![allow(non_snake_case, reason = "the names are the standard's")]
+
+use super::legality as may;
+use super::types::*;
+use crate::fmi::CallError;
+use crate::fmi::access::DataType;
+use crate::fmi::boundary::{enter, input, output};
+use crate::unit::variable::Kind;
+
+/// All variables are scalars: one value per reference.
+#[inline]
+fn require_length(got: usize, expected: usize) -> Result<(), CallError> {
+    if got == expected { Ok(()) } else { Err(CallError::WrongLength { argument: "nValues", got, expected }) }
+}
+
+/// A getter and a setter of one data type.
+macro_rules! accessors {
+    ($name:literal, $carries:expr, $get:ident $get_rule:ident, $set:ident $set_rule:ident, $type:ty,
+     $from:expr, $into:expr) => {
+        /// # Safety
+        /// A live handle, used by one thread at a time; the arrays hold as many elements as the counts say.
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $get(
+            instance: fmi3Instance,
+            references: *const fmi3ValueReference,
+            count: usize,
+            values: *mut $type,
+            value_count: usize,
+        ) -> fmi3Status {
+            // SAFETY: the caller's promise.
+            unsafe {
+                enter(instance, &may::$get_rule, |instance| {
+                    require_length(value_count, count)?;
+                    let references = input(references, count, "valueReferences")?;
+                    let values = output(values, count, "values")?;
+                    instance.get(&DataType { name: $name, carries: $carries }, references, values, $from)
+                })
+            }
+        }
+
+        /// # Safety
+        /// A live handle, used by one thread at a time; the arrays hold as many elements as the counts say.
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $set(
+            instance: fmi3Instance,
+            references: *const fmi3ValueReference,
+            count: usize,
+            values: *const $type,
+            value_count: usize,
+        ) -> fmi3Status {
+            // SAFETY: the caller's promise.
+            unsafe {
+                enter(instance, &may::$set_rule, |instance| {
+                    require_length(value_count, count)?;
+                    let references = input(references, count, "valueReferences")?;
+                    let values = input(values, count, "values")?;
+                    instance.set(&DataType { name: $name, carries: $carries }, references, values, $into)
+                })
+            }
+        }
+    };
+}
+
+/// A data type that no variable has, so nothing is ever converted.
+macro_rules! absent {
+    ($name:literal, $get:ident $get_rule:ident, $set:ident $set_rule:ident, $type:ty, $zero:expr) => {
+        accessors!($name, |_| false, $get $get_rule, $set $set_rule, $type, |_| $zero, |_| 0.0);
+    };
+}
+
+accessors!("a Float64", |kind| matches!(kind, Kind::Real(_)),
+    fmi3GetFloat64 GET_FLOAT64, fmi3SetFloat64 SET_FLOAT64, f64, |value| value, |value| value);
+accessors!("an Int32", |kind| matches!(kind, Kind::Integer),
+    fmi3GetInt32 GET_INT32, fmi3SetInt32 SET_INT32, i32, |value| value as i32, f64::from);
+// A number beyond 2^53 loses digits, but is no item of any enumeration either.
+accessors!("an Int64 or Enumeration", |kind| matches!(kind, Kind::Enumeration(_)),
+    fmi3GetInt64 GET_INT64, fmi3SetInt64 SET_INT64, i64, |value| value as i64, |value| value as f64);
+accessors!("a Boolean", |kind| matches!(kind, Kind::Boolean),
+    fmi3GetBoolean GET_BOOLEAN, fmi3SetBoolean SET_BOOLEAN, fmi3Boolean,
+    |value| fmi3Boolean::from(value != 0.0), |value| f64::from(u8::from(value != FMI3_FALSE)));
+absent!("a Float32", fmi3GetFloat32 GET_FLOAT32, fmi3SetFloat32 SET_FLOAT32, f32, 0.0);
+absent!("an Int8", fmi3GetInt8 GET_INT8, fmi3SetInt8 SET_INT8, i8, 0);
+absent!("a UInt8", fmi3GetUInt8 GET_UINT8, fmi3SetUInt8 SET_UINT8, u8, 0);
+absent!("an Int16", fmi3GetInt16 GET_INT16, fmi3SetInt16 SET_INT16, i16, 0);
+absent!("a UInt16", fmi3GetUInt16 GET_UINT16, fmi3SetUInt16 SET_UINT16, u16, 0);
+absent!("a UInt32", fmi3GetUInt32 GET_UINT32, fmi3SetUInt32 SET_UINT32, u32, 0);
+absent!("a UInt64", fmi3GetUInt64 GET_UINT64, fmi3SetUInt64 SET_UINT64, u64, 0);
+absent!("a String", fmi3GetString GET_STRING, fmi3SetString SET_STRING, fmi3String, core::ptr::null());
+
+const BINARY: DataType = DataType { name: "a Binary", carries: |_| false };
+const CLOCK: DataType = DataType { name: "a Clock", carries: |_| false };
+
+/// # Safety
+/// A live handle, used by one thread at a time; the arrays hold as many elements as the counts say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3GetBinary(
+    instance: fmi3Instance,
+    references: *const fmi3ValueReference,
+    count: usize,
+    _sizes: *mut usize,
+    values: *mut fmi3Binary,
+    value_count: usize,
+) -> fmi3Status {
+    // SAFETY: the caller's promise.
+    unsafe {
+        enter(instance, &may::GET_BINARY, |instance| {
+            require_length(value_count, count)?;
+            let references = input(references, count, "valueReferences")?;
+            instance.get(&BINARY, references, output(values, count, "values")?, |_| core::ptr::null())
+        })
+    }
+}
+
+/// # Safety
+/// A live handle, used by one thread at a time; the arrays hold as many elements as the counts say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3SetBinary(
+    instance: fmi3Instance,
+    references: *const fmi3ValueReference,
+    count: usize,
+    _sizes: *const usize,
+    values: *const fmi3Binary,
+    value_count: usize,
+) -> fmi3Status {
+    // SAFETY: the caller's promise.
+    unsafe {
+        enter(instance, &may::SET_BINARY, |instance| {
+            require_length(value_count, count)?;
+            let references = input(references, count, "valueReferences")?;
+            instance.set(&BINARY, references, input(values, count, "values")?, |_| 0.0)
+        })
+    }
+}
+
+/// # Safety
+/// A live handle, used by one thread at a time; both arrays hold `count` elements.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3GetClock(
+    instance: fmi3Instance,
+    references: *const fmi3ValueReference,
+    count: usize,
+    values: *mut fmi3Clock,
+) -> fmi3Status {
+    // SAFETY: the caller's promise.
+    unsafe {
+        enter(instance, &may::GET_CLOCK, |instance| {
+            let references = input(references, count, "valueReferences")?;
+            instance.get(&CLOCK, references, output(values, count, "values")?, |_| 0)
+        })
+    }
+}
+
+/// # Safety
+/// A live handle, used by one thread at a time; both arrays hold `count` elements.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3SetClock(
+    instance: fmi3Instance,
+    references: *const fmi3ValueReference,
+    count: usize,
+    values: *const fmi3Clock,
+) -> fmi3Status {
+    // SAFETY: the caller's promise.
+    unsafe {
+        enter(instance, &may::SET_CLOCK, |instance| {
+            let references = input(references, count, "valueReferences")?;
+            instance.set(&CLOCK, references, input(values, count, "values")?, |_| 0.0)
+        })
+    }
+}

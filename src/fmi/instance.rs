@@ -1,0 +1,162 @@
+//! An instantiated unit with its life cycle.
+
+use core::ffi::CStr;
+use core::fmt;
+
+use super::{CallError, Callback, CommunicationPoint, Function, Logger, Phase};
+use crate::unit::variable::Variable;
+use crate::unit::{Journal, TIME, Topic, UNITS, Unit};
+
+/// What a handle (`fmi2Component`, `fmi3Instance`) points to.
+pub struct Instance {
+    pub(super) unit: Box<dyn Unit>,
+    /// The unit as made, for reset.
+    template: Box<dyn Unit>,
+    pub(super) variables: &'static [Variable],
+    pub(super) phase: Phase,
+    pub(super) logger: Logger,
+    pub(super) communication: CommunicationPoint,
+    start_time: f64,
+    /// Whether a value was set since the calculated ones were last computed, before the first step.
+    pub(super) is_stale: bool,
+}
+
+impl Instance {
+    /// An instance of any unit, not only of those the library knows by token.
+    pub fn new(unit: Box<dyn Unit>, logger: Logger) -> Self {
+        Self {
+            template: unit.boxed_clone(),
+            variables: unit.description().variables,
+            unit,
+            phase: Phase::Instantiated,
+            logger,
+            communication: CommunicationPoint::new(0.0),
+            start_time: 0.0,
+            is_stale: true,
+        }
+    }
+
+    #[inline]
+    pub(super) fn require(&self, function: &Function) -> Result<(), CallError> {
+        if function.is_allowed_in(self.phase) {
+            Ok(())
+        } else {
+            Err(CallError::WrongPhase(self.phase.name()))
+        }
+    }
+
+    /// Start and stop time of the experiment \[s\]; the stop time only has to make sense, steps may go beyond.
+    pub(super) fn set_experiment(
+        &mut self,
+        start_time: f64,
+        stop_time: Option<f64>,
+    ) -> Result<(), CallError> {
+        if !start_time.is_finite() {
+            let expected = "a finite time";
+            return Err(CallError::WrongTime { argument: "startTime", value: start_time, expected });
+        }
+        if let Some(stop_time) = stop_time
+            && (stop_time.is_nan() || stop_time < start_time)
+        {
+            let expected = "a time not before startTime";
+            return Err(CallError::WrongTime { argument: "stopTime", value: stop_time, expected });
+        }
+        self.start_time = start_time;
+        self.communication = CommunicationPoint::new(start_time);
+        self.is_stale = true;
+        Ok(())
+    }
+
+    pub(super) fn enter_initialization_mode(&mut self) -> Result<(), CallError> {
+        self.phase = Phase::InitializationMode;
+        self.is_stale = true;
+        Ok(())
+    }
+
+    /// Computes all calculated values if something changed since the last time.
+    pub(super) fn refresh(&mut self) -> Result<(), CallError> {
+        if self.is_stale {
+            self.unit.initialise(self.start_time)?;
+            self.is_stale = false;
+        }
+        Ok(())
+    }
+
+    pub(super) fn exit_initialization_mode(&mut self) -> Result<(), CallError> {
+        self.is_stale = true;
+        self.refresh()?;
+        self.phase = Phase::StepMode;
+        let (name, start_time) = (self.unit.description().name, self.start_time);
+        self.note(format_args!("{name} initialised at t = {start_time} s"));
+        Ok(())
+    }
+
+    /// One step from `point` over `step_size`, both in s.
+    #[inline]
+    pub(super) fn do_step(&mut self, point: f64, step_size: f64) -> Result<(), CallError> {
+        let duration = self.communication.duration(point, step_size)?;
+        self.unit.advance(duration, &mut self.logger)?;
+        self.communication.advance(point, step_size);
+        self.unit.values_mut()[TIME] = self.communication.now();
+        Ok(())
+    }
+
+    pub(super) fn terminate(&mut self) -> Result<(), CallError> {
+        self.phase = Phase::Terminated;
+        self.note(format_args!("terminated at t = {} s", self.communication.now()));
+        Ok(())
+    }
+
+    /// Back to the state right after instantiation.
+    pub(super) fn reset(&mut self) -> Result<(), CallError> {
+        self.unit = self.template.boxed_clone();
+        self.phase = Phase::Instantiated;
+        self.start_time = 0.0;
+        self.communication = CommunicationPoint::new(0.0);
+        self.is_stale = true;
+        self.note(format_args!("reset"));
+        Ok(())
+    }
+
+    pub(super) fn note(&mut self, message: fmt::Arguments<'_>) {
+        self.logger.note(Topic::Events, message);
+    }
+}
+
+/// Makes an instance of the unit whose token is `token`, or logs why not. `refused_interface` names the interface
+/// type that was asked for when it is not the one on offer.
+pub(super) fn instantiate(
+    function: &str,
+    name: Option<&CStr>,
+    token: Option<&CStr>,
+    callback: Callback,
+    logging_on: bool,
+    refused_interface: Option<&str>,
+) -> Option<Instance> {
+    let logger = Logger::new(callback, name.unwrap_or_default().into(), logging_on);
+    if let Some(interface) = refused_interface {
+        logger.error(format_args!("{function}: {interface} is not offered, only co-simulation"));
+        return None;
+    }
+    let token = token.unwrap_or_default().to_str().unwrap_or_default();
+    let Some(unit) = UNITS.iter().find(|unit| unit.description.token().as_str() == token) else {
+        logger
+            .error(format_args!("{function}: the token \"{token}\" is none of this library: {KnownTokens}"));
+        return None;
+    };
+    let mut instance = Instance::new((unit.create)(), logger);
+    instance.note(format_args!("{} instantiated", unit.description.name));
+    Some(instance)
+}
+
+/// All units with their tokens, for an error message.
+struct KnownTokens;
+
+impl fmt::Display for KnownTokens {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("expected")?;
+        UNITS.iter().try_for_each(|unit| {
+            write!(formatter, " {} for {}", unit.description.token().as_str(), unit.description.name)
+        })
+    }
+}
