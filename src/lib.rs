@@ -1,3 +1,5 @@
 //! Magnetic levitation and magnetic bearings as FMI 2.0 and FMI 3.0 units.
 
 pub mod fmi;
+#[cfg(feature = "tools")]
+pub mod host;
