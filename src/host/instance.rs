@@ -5,12 +5,13 @@ use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::component::{Answer, Component, Refusal};
-use super::description::{Kind, ModelDescription, Variable};
-use super::error::{HostError, ReportedStatus, Result};
-use super::fmu::{Loaded, c_text};
+use super::component::{Component, Refusal};
+use super::description::{Kind, ModelDescription};
+use super::error::{HostError, Result};
+use super::fmu::Loaded;
 use super::journal::{Journal, LogMessage};
-use super::value::{Handle, Value};
+use super::refusal::Subject;
+use super::value::Handle;
 
 /// Whether an instance is asked to log; it may report errors in any case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,7 +38,7 @@ enum Phase {
 pub struct Instance {
     name: String,
     pub(super) component: Box<dyn Component>,
-    journal: Arc<Journal>,
+    pub(super) journal: Arc<Journal>,
     phase: Cell<Phase>,
     /// Tells instances apart, so that a saved state cannot get into the wrong one.
     pub(super) identity: u64,
@@ -163,45 +164,6 @@ impl Instance {
         self.explain(answer, Subject::none)
     }
 
-    /// Sets a variable by its name: a number, a flag, the name of an enumeration's item, or a string.
-    ///
-    /// # Errors
-    /// Those of [`Instance::variable`] and [`Instance::set`], and [`HostError::UnknownItem`].
-    pub fn set_by_name<'a>(&mut self, name: &str, value: impl Into<Value<'a>>) -> Result<()> {
-        let handle = self.variable(name)?;
-        match value.into() {
-            Value::Real(_) | Value::Integer(_) if handle.kind == Kind::Boolean => {
-                Err(self.wrong_kind(name, handle.kind, "number"))
-            }
-            Value::Real(number) => self.set(handle, number),
-            Value::Integer(number) => self.set(handle, f64::from(number)),
-            Value::Boolean(flag) if handle.kind == Kind::Boolean => {
-                self.set(handle, f64::from(u8::from(flag)))
-            }
-            Value::Boolean(_) => Err(self.wrong_kind(name, handle.kind, "boolean")),
-            Value::Text(item) if handle.kind == Kind::Enumeration => {
-                let number = self.item_number(name, item)?;
-                // Items beyond 2^53 are not a thing; `set` would refuse the rounded number anyway.
-                self.set(handle, number as f64)
-            }
-            Value::Text(text) if handle.kind == Kind::String => {
-                self.usable()?;
-                let text = c_text(name, text)?;
-                let answer = self.component.set_text(handle.value_reference, &text);
-                self.explain(answer, || self.describe(handle))
-            }
-            Value::Text(_) => Err(self.wrong_kind(name, handle.kind, "text")),
-        }
-    }
-
-    /// The value of a numeric or boolean variable by its name.
-    ///
-    /// # Errors
-    /// Those of [`Instance::variable`] and [`Instance::get`].
-    pub fn get_by_name(&self, name: &str) -> Result<f64> {
-        self.get(self.variable(name)?)
-    }
-
     /// Enters and exits initialisation: afterwards the unit can step from `start_time` (both times in seconds).
     ///
     /// # Errors
@@ -272,6 +234,11 @@ impl Instance {
         self.explain(answer, Subject::none)
     }
 
+    /// After `Fatal`: no more calls, not even to free the instance.
+    pub(super) fn give_up(&self) {
+        self.phase.set(Phase::Lost);
+    }
+
     #[inline]
     pub(super) fn usable(&self) -> Result<()> {
         if self.phase.get() == Phase::Lost {
@@ -286,80 +253,6 @@ impl Instance {
             return Ok(());
         }
         Err(HostError::LengthMismatch { instance: self.name.clone(), references, values })
-    }
-
-    /// Turns a refusal into an error with all names; looks up the variable only then.
-    #[inline]
-    pub(super) fn explain<T>(&self, answer: Answer<T>, variable: impl FnOnce() -> Subject) -> Result<T> {
-        answer.map_err(|refusal| self.error(refusal, variable()))
-    }
-
-    #[cold]
-    fn error(&self, refusal: Refusal, Subject { name, kind }: Subject) -> HostError {
-        let instance = self.name.clone();
-        match refusal {
-            Refusal::Status { function, status } => {
-                if status == crate::fmi::Status::Fatal as i32 {
-                    self.phase.set(Phase::Lost);
-                }
-                let log = self.journal.last_text();
-                HostError::Call { function, instance, status: ReportedStatus(status), log }
-            }
-            Refusal::Missing { function } => {
-                HostError::MissingFunction { model: self.description().model_name.clone(), function }
-            }
-            Refusal::NotExact { value, target } => {
-                HostError::NotRepresentable { instance, variable: name, value, target }
-            }
-            Refusal::WrongStorage => {
-                let given = if kind == Kind::String { "number" } else { "text" };
-                self.wrong_kind(&name, kind, if kind == Kind::Other { "value" } else { given })
-            }
-            Refusal::Termination => {
-                HostError::TerminationRequested { instance, time: f64::NAN, log: self.journal.last_text() }
-            }
-        }
-    }
-
-    fn describe(&self, handle: Handle) -> Subject {
-        let same = |variable: &&Variable| {
-            variable.value_reference == handle.value_reference && variable.storage == handle.storage
-        };
-        let name = match self.description().variables.iter().find(same) {
-            Some(variable) => variable.name.clone(),
-            None => format!("value reference {}", handle.value_reference),
-        };
-        Subject { name, kind: handle.kind }
-    }
-
-    fn wrong_kind(&self, variable: &str, kind: Kind, given: &'static str) -> HostError {
-        HostError::WrongKind { instance: self.name.clone(), variable: variable.to_owned(), kind, given }
-    }
-
-    fn item_number(&self, name: &str, item: &str) -> Result<i64> {
-        let items = self.description().enumeration_items(self.description().variable(name)?);
-        items.iter().find(|candidate| candidate.name == item).map(|found| found.value).ok_or_else(|| {
-            let known: Vec<_> = items.iter().map(|item| format!("`{}`", item.name)).collect();
-            HostError::UnknownItem {
-                instance: self.name.clone(),
-                variable: name.to_owned(),
-                item: item.to_owned(),
-                known: if known.is_empty() { "items without names".to_owned() } else { known.join(", ") },
-            }
-        })
-    }
-}
-
-/// The variable an error message is about.
-pub(super) struct Subject {
-    name: String,
-    kind: Kind,
-}
-
-impl Subject {
-    /// For calls that concern no single variable: their refusals do not mention one.
-    pub(super) fn none() -> Self {
-        Self { name: String::new(), kind: Kind::Other }
     }
 }
 

@@ -20,6 +20,7 @@
 //! The module knows the C ABI and the XML only, so it drives anybody's FMU.
 
 mod archive;
+mod by_name;
 mod component;
 mod description;
 mod error;
@@ -30,6 +31,7 @@ mod instance;
 mod journal;
 mod library;
 mod master;
+mod refusal;
 mod route;
 mod saved_state;
 mod trace;

@@ -3,7 +3,8 @@
 use std::ffi::c_void;
 
 use super::error::{HostError, Result};
-use super::instance::{Instance, Subject};
+use super::instance::Instance;
+use super::refusal::Subject;
 
 /// The complete state of one instance, held by the FMU.
 ///
