@@ -2,6 +2,8 @@
 
 pub mod controller;
 pub mod fmi;
+#[cfg(feature = "tools")]
+pub mod host;
 pub mod observer;
 pub mod plant;
 pub mod signal;

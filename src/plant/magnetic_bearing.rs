@@ -89,16 +89,23 @@ impl MagneticBearing {
         self.effect_with_sign(flux_sign(map, flux, voltage), flux, voltage, duration)
     }
 
-    /// Terms of (4a) that stem from the force, with sgn(x3) replaced by `sign`.
+    /// Terms of (4a) that stem from the force, with sgn(x3) replaced by `sign`. With z = x3 + u T they are
+    ///
+    /// ```text
+    /// velocity:  T (eps (x3 + z) / 2 + s (x3^2 + x3 z + z^2) / 3)
+    /// position:  T^2 (eps (2 x3 + z) / 6 + s (3 x3^2 + 2 x3 z + z^2) / 12)
+    /// ```
     #[inline]
     fn effect_with_sign(&self, sign: f64, flux: f64, voltage: f64, duration: f64) -> ForceEffect {
-        let t = duration;
-        let force = self.epsilon * flux + flux * flux.abs();
-        let first = voltage * (self.epsilon + 2.0 * sign * flux);
-        let second = voltage * voltage * sign;
+        let flux_after = flux + voltage * duration;
+        let (before, mixed, after) = (flux * flux, flux * flux_after, flux_after * flux_after);
+        let bias_velocity = self.epsilon * (0.5 * (flux + flux_after));
+        let bias_position = self.epsilon * ((2.0 * flux + flux_after) * (1.0 / 6.0));
         ForceEffect {
-            velocity: t * (force + t * (first / 2.0 + t * second / 3.0)),
-            position: t * t * (force / 2.0 + t * (first / 6.0 + t * second / 12.0)),
+            velocity: duration * (bias_velocity + sign * ((before + mixed + after) * (1.0 / 3.0))),
+            position: duration
+                * duration
+                * (bias_position + sign * ((3.0 * before + 2.0 * mixed + after) * (1.0 / 12.0))),
         }
     }
 
@@ -114,33 +121,31 @@ impl MagneticBearing {
         }
     }
 
-    /// Derivative of [`Self::force_effect`] with respect to the flux at the start; both forms are free of
-    /// cancellation, also for a vanishing voltage.
+    /// Derivative of [`Self::force_effect`] with respect to the flux at the start; all forms are free of
+    /// cancellation, also for a vanishing voltage. For the printed map d|x3|/dx3 = sgn(x3) and d sgn(x3)/dx3 = 0,
+    /// as the paper assumes.
     #[inline]
     pub fn force_effect_slope(&self, map: Map, flux: f64, voltage: f64, duration: f64) -> ForceEffect {
-        let t = duration;
-        let flux_after = flux + voltage * t;
-        let (before, after) = (flux.abs(), flux_after.abs());
-        if map == Map::Exact {
-            if flux * flux_after < 0.0 {
-                // With a = |x3|, b = |x3 + u T| on opposite sides of zero.
-                return ForceEffect {
-                    velocity: self.epsilon * t + (before * before + after * after) / voltage.abs(),
-                    position: self.epsilon * t * t / 2.0
-                        + (after * after * after + before * before * (3.0 * after + 2.0 * before))
-                            / (3.0 * voltage * voltage),
-                };
-            }
-            return ForceEffect {
-                velocity: t * (self.epsilon + before + after),
-                position: t * t * (self.epsilon / 2.0 + (2.0 * before + after) / 3.0),
-            };
+        let flux_after = flux + voltage * duration;
+        if map == Map::Exact && flux * flux_after < 0.0 {
+            return self.slope_across_zero(flux.abs(), flux_after.abs(), voltage, duration);
         }
-        // Derivative of (4a) with d|x3|/dx3 = sgn(x3) and d sgn(x3)/dx3 = 0, as the paper assumes.
-        let first = 2.0 * voltage * flux_sign(map, flux, voltage);
+        let sign = flux_sign(map, flux, voltage);
         ForceEffect {
-            velocity: t * (self.epsilon + 2.0 * before + t * first / 2.0),
-            position: t * t * ((self.epsilon + 2.0 * before) / 2.0 + t * first / 6.0),
+            velocity: duration * (self.epsilon + sign * (flux + flux_after)),
+            position: duration
+                * duration
+                * (0.5 * self.epsilon + sign * ((2.0 * flux + flux_after) * (1.0 / 3.0))),
+        }
+    }
+
+    /// Slope when the flux crosses zero, with a = |x3| before and b = |x3 + u T| after.
+    fn slope_across_zero(&self, a: f64, b: f64, voltage: f64, duration: f64) -> ForceEffect {
+        let bias = self.epsilon * duration;
+        ForceEffect {
+            velocity: bias + (a * a + b * b) / voltage.abs(),
+            position: bias * duration / 2.0
+                + (b * b * b + a * a * (3.0 * b + 2.0 * a)) / (3.0 * voltage * voltage),
         }
     }
 

@@ -52,8 +52,10 @@ impl SampleClock {
         let periods = (self.elapsed.0 + self.elapsed.1) / self.period;
         // The quotient itself is only good to some last digits; this matters beyond 1e9 periods.
         let tolerance = TOLERANCE.max(8.0 * f64::EPSILON * periods.abs());
-        // The cast saturates; 2^63 ticks are out of reach.
-        libm::ceil(periods - tolerance) as i64
+        let bound = periods - tolerance;
+        // Rounds up; the casts saturate, and 2^63 ticks are out of reach.
+        let below = bound as i64;
+        if (below as f64) < bound { below.saturating_add(1) } else { below }
     }
 }
 

@@ -1,0 +1,158 @@
+//! The C functions of FMI 2.0 that a co-simulation client calls, and how an instance is made.
+
+use std::ffi::{CStr, c_void};
+use std::mem::transmute;
+use std::ptr::NonNull;
+use std::sync::Arc;
+
+use crate::fmi::fmi2::types::*;
+
+use crate::host::error::Result;
+use crate::host::journal::Journal;
+use crate::host::library::LoadedLibrary;
+
+use super::instance::{Callbacks, FmiTwo};
+
+pub(super) type OfComponent = unsafe extern "C" fn(fmi2Component) -> fmi2Status;
+pub(super) type Get<T> =
+    unsafe extern "C" fn(fmi2Component, *const fmi2ValueReference, usize, *mut T) -> fmi2Status;
+pub(super) type Set<T> =
+    unsafe extern "C" fn(fmi2Component, *const fmi2ValueReference, usize, *const T) -> fmi2Status;
+type Instantiate = unsafe extern "C" fn(
+    fmi2String,
+    fmi2Type,
+    fmi2String,
+    fmi2String,
+    *const fmi2CallbackFunctions,
+    fmi2Boolean,
+    fmi2Boolean,
+) -> fmi2Component;
+type SetupExperiment =
+    unsafe extern "C" fn(fmi2Component, fmi2Boolean, fmi2Real, fmi2Real, fmi2Boolean, fmi2Real) -> fmi2Status;
+type DoStep = unsafe extern "C" fn(fmi2Component, fmi2Real, fmi2Real, fmi2Boolean) -> fmi2Status;
+type StateByPointer = unsafe extern "C" fn(fmi2Component, *mut fmi2FMUstate) -> fmi2Status;
+type StateByValue = unsafe extern "C" fn(fmi2Component, fmi2FMUstate) -> fmi2Status;
+
+/// The functions a co-simulation client of FMI 2.0 calls.
+#[derive(Clone, Copy)]
+pub(in crate::host) struct Functions {
+    pub(super) instantiate: Instantiate,
+    pub(super) free_instance: unsafe extern "C" fn(fmi2Component),
+    pub(super) setup_experiment: SetupExperiment,
+    pub(super) enter_initialisation: OfComponent,
+    pub(super) exit_initialisation: OfComponent,
+    pub(super) terminate: OfComponent,
+    pub(super) reset: OfComponent,
+    pub(super) do_step: DoStep,
+    pub(super) get_real: Get<fmi2Real>,
+    pub(super) set_real: Set<fmi2Real>,
+    pub(super) get_integer: Get<fmi2Integer>,
+    pub(super) set_integer: Set<fmi2Integer>,
+    pub(super) get_boolean: Get<fmi2Boolean>,
+    pub(super) set_boolean: Set<fmi2Boolean>,
+    pub(super) get_string: Get<fmi2String>,
+    pub(super) set_string: Set<fmi2String>,
+    pub(super) get_state: Option<StateByPointer>,
+    pub(super) set_state: Option<StateByValue>,
+    pub(super) free_state: Option<StateByPointer>,
+}
+
+impl Functions {
+    pub(in crate::host) fn resolve(library: &LoadedLibrary) -> Result<Self> {
+        library.check_version("fmi2GetVersion", "2.0")?;
+        // SAFETY: each field has the type that fmi2FunctionTypes.h gives to the function named beside it.
+        unsafe {
+            Ok(Self {
+                instantiate: library.required("fmi2Instantiate")?,
+                free_instance: library.required("fmi2FreeInstance")?,
+                setup_experiment: library.required("fmi2SetupExperiment")?,
+                enter_initialisation: library.required("fmi2EnterInitializationMode")?,
+                exit_initialisation: library.required("fmi2ExitInitializationMode")?,
+                terminate: library.required("fmi2Terminate")?,
+                reset: library.required("fmi2Reset")?,
+                do_step: library.required("fmi2DoStep")?,
+                get_real: library.required("fmi2GetReal")?,
+                set_real: library.required("fmi2SetReal")?,
+                get_integer: library.required("fmi2GetInteger")?,
+                set_integer: library.required("fmi2SetInteger")?,
+                get_boolean: library.required("fmi2GetBoolean")?,
+                set_boolean: library.required("fmi2SetBoolean")?,
+                get_string: library.required("fmi2GetString")?,
+                set_string: library.required("fmi2SetString")?,
+                get_state: library.optional("fmi2GetFMUstate"),
+                set_state: library.optional("fmi2SetFMUstate"),
+                free_state: library.optional("fmi2FreeFMUstate"),
+            })
+        }
+    }
+
+    /// A new co-simulation instance, `None` if the FMU refuses.
+    pub(in crate::host) fn instantiate(
+        self,
+        name: &CStr,
+        token: &CStr,
+        resource_location: &CStr,
+        logging: bool,
+        journal: Arc<Journal>,
+    ) -> Option<FmiTwo> {
+        let callbacks = Box::new(fmi2CallbackFunctions {
+            logger: Some(variadic_logger()),
+            allocate_memory: Some(calloc),
+            free_memory: Some(free),
+            step_finished: None,
+            component_environment: Arc::as_ptr(&journal).cast_mut().cast(),
+        });
+        // A raw pointer from here on: the FMU keeps it and reads through it until it is freed.
+        let callbacks = Callbacks(NonNull::from(Box::leak(callbacks)));
+        // SAFETY: all strings end with NUL and outlive the call; the callbacks outlive the instance.
+        let component = unsafe {
+            (self.instantiate)(
+                name.as_ptr(),
+                FMI2_CO_SIMULATION,
+                token.as_ptr(),
+                resource_location.as_ptr(),
+                callbacks.0.as_ptr(),
+                FMI2_FALSE,
+                fmi2Boolean::from(logging),
+            )
+        };
+        (!component.is_null()).then_some(FmiTwo {
+            component,
+            functions: self,
+            _callbacks: callbacks,
+            _journal: journal,
+        })
+    }
+}
+
+unsafe extern "C" {
+    // The C library's own, which the standard suggests and every program of the standard library links.
+    fn calloc(count: usize, size: usize) -> *mut c_void;
+    fn free(object: *mut c_void);
+}
+
+/// Collects a message; the arguments after the format string stay unread.
+unsafe extern "C" fn log(
+    environment: fmi2ComponentEnvironment,
+    _instance_name: fmi2String,
+    status: fmi2Status,
+    category: fmi2String,
+    message: fmi2String,
+) {
+    // SAFETY: the environment is the journal of a living instance, the strings are C strings or NULL.
+    unsafe {
+        Journal::append(environment.cast_const().cast(), status, category, message, |text| {
+            text.replace("%%", "%")
+        });
+    }
+}
+
+fn variadic_logger() -> fmi2CallbackLogger {
+    type FixedArguments =
+        unsafe extern "C" fn(fmi2ComponentEnvironment, fmi2String, fmi2Status, fmi2String, fmi2String);
+    // SAFETY: stable Rust cannot define a variadic function. On the C ABIs of the supported platforms (System V
+    // x86-64, Windows x64, AAPCS64 and Apple's variant of it) the named arguments of a variadic call, all of them
+    // pointers and one int here, lie where those of an ordinary call lie, and the caller cleans up the rest.
+    // `log` reads the named arguments only, so it cannot tell the difference.
+    unsafe { transmute::<FixedArguments, fmi2CallbackLogger>(log) }
+}

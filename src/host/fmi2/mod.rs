@@ -1,0 +1,6 @@
+//! FMI 2.0: the function table of a library, and one instance behind it.
+
+mod functions;
+mod instance;
+
+pub(super) use functions::Functions;

@@ -1,0 +1,168 @@
+//! An FMU on disk becomes a loaded one that can be instantiated.
+
+use std::ffi::CString;
+use std::fmt;
+use std::path::Path;
+use std::sync::Arc;
+
+use super::archive::Archive;
+use super::component::Component;
+use super::description::{FmiVersion, ModelDescription};
+use super::error::{HostError, Result};
+use super::instance::{Instance, Logging};
+use super::journal::Journal;
+use super::library::LoadedLibrary;
+use super::{fmi2, fmi3};
+
+/// An opened FMU: unpacked, its library loaded, its functions resolved. Cheap to clone.
+///
+/// The library is unloaded and the unpacked files are removed with the last `Fmu` or [`Instance`] that uses them.
+#[derive(Clone)]
+pub struct Fmu {
+    loaded: Arc<Loaded>,
+}
+
+/// Everything an instance needs to stay alive. The order of the fields is the order in which they go:
+/// the library before its file, which some systems do not let go earlier.
+pub(super) struct Loaded {
+    functions: Functions,
+    _library: LoadedLibrary,
+    archive: Archive,
+    pub(super) description: ModelDescription,
+}
+
+enum Functions {
+    Two(fmi2::Functions),
+    Three(Box<fmi3::Functions>),
+}
+
+impl Functions {
+    /// The function that creates an instance, for error messages.
+    fn instantiate_name(&self) -> &'static str {
+        match self {
+            Self::Two(_) => "fmi2Instantiate",
+            Self::Three(_) => "fmi3InstantiateCoSimulation",
+        }
+    }
+}
+
+impl Fmu {
+    /// Unpacks the FMU at `path`, reads its description and loads its library for this platform.
+    ///
+    /// This runs code of the FMU: open only what you trust.
+    ///
+    /// # Errors
+    /// Those of [`Archive::unpack`] and [`Archive::description`], [`HostError::NoCoSimulation`],
+    /// [`HostError::NoLibrary`], [`HostError::LoadLibrary`], [`HostError::MissingFunction`] and
+    /// [`HostError::VersionMismatch`].
+    pub fn open(path: &Path) -> Result<Self> {
+        let archive = Archive::unpack(path)?;
+        let description = archive.description()?;
+        let interface = description
+            .co_simulation
+            .as_ref()
+            .ok_or_else(|| HostError::NoCoSimulation { model: description.model_name.clone() })?;
+        let library = LoadedLibrary::load(archive.directory(), &description, interface)?;
+        let functions = match description.fmi_version {
+            FmiVersion::Two => Functions::Two(fmi2::Functions::resolve(&library)?),
+            FmiVersion::Three => Functions::Three(Box::new(fmi3::Functions::resolve(&library)?)),
+        };
+        Ok(Self { loaded: Arc::new(Loaded { functions, _library: library, archive, description }) })
+    }
+
+    /// What `modelDescription.xml` says.
+    pub fn description(&self) -> &ModelDescription {
+        &self.loaded.description
+    }
+
+    /// Where the FMU is unpacked.
+    pub fn directory(&self) -> &Path {
+        self.loaded.archive.directory()
+    }
+
+    /// A new co-simulation instance called `name`, with the token of the description.
+    ///
+    /// # Errors
+    /// [`HostError::Instantiate`] if the FMU refuses, [`HostError::NulInText`] for a name C cannot hold.
+    pub fn instantiate(&self, name: &str, logging: Logging) -> Result<Instance> {
+        self.instantiate_with_token(name, &self.description().instantiation_token, logging)
+    }
+
+    /// As [`Fmu::instantiate`], with a token of your own: to test that a wrong one is refused.
+    ///
+    /// # Errors
+    /// As [`Fmu::instantiate`].
+    pub fn instantiate_with_token(&self, name: &str, token: &str, logging: Logging) -> Result<Instance> {
+        let loaded = &*self.loaded;
+        let resources = loaded.archive.resources();
+        let resources = match loaded.functions {
+            Functions::Two(_) => file_uri(&resources),
+            // FMI 3.0 asks for a plain path that ends with a separator.
+            Functions::Three(_) => format!("{}{}", resources.display(), std::path::MAIN_SEPARATOR),
+        };
+        let c_name = c_text("instance name", name)?;
+        let token = c_text("instantiation token", token)?;
+        let resources = c_text("resource path", &resources)?;
+        let journal = Arc::new(Journal::default());
+        let log = logging == Logging::On;
+        let component: Option<Box<dyn Component>> = match &loaded.functions {
+            Functions::Two(functions) => functions
+                .instantiate(&c_name, &token, &resources, log, Arc::clone(&journal))
+                .map(|component| Box::new(component) as _),
+            Functions::Three(functions) => functions
+                .instantiate(&c_name, &token, &resources, log, Arc::clone(&journal))
+                .map(|component| Box::new(component) as _),
+        };
+        let Some(component) = component else {
+            return Err(HostError::Instantiate {
+                model: loaded.description.model_name.clone(),
+                function: loaded.functions.instantiate_name(),
+                instance: name.to_owned(),
+                log: journal.last_text(),
+            });
+        };
+        Ok(Instance::new(name.to_owned(), component, journal, Arc::clone(&self.loaded)))
+    }
+}
+
+impl fmt::Debug for Fmu {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter
+            .debug_struct("Fmu")
+            .field("model_name", &self.description().model_name)
+            .field("directory", &self.directory())
+            .finish_non_exhaustive()
+    }
+}
+
+pub(super) fn c_text(purpose: &str, text: &str) -> Result<CString> {
+    CString::new(text)
+        .map_err(|_| HostError::NulInText { purpose: purpose.to_owned(), text: text.to_owned() })
+}
+
+/// The URI of a directory, as FMI 2.0 wants its resource location.
+fn file_uri(path: &Path) -> String {
+    let text = path.display().to_string().replace('\\', "/");
+    // `C:/...` of Windows needs a third slash, `/...` brings its own.
+    let mut uri = String::from(if text.starts_with('/') { "file://" } else { "file:///" });
+    for byte in text.bytes() {
+        if byte.is_ascii_alphanumeric() || b"-._~/:".contains(&byte) {
+            uri.push(char::from(byte));
+        } else {
+            uri.push_str(&format!("%{byte:02X}"));
+        }
+    }
+    uri
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn resource_location_is_a_valid_uri() {
+        assert_eq!(file_uri(Path::new("/tmp/a b/resources")), "file:///tmp/a%20b/resources");
+        assert_eq!(file_uri(Path::new("C:\\fmu\\resources")), "file:///C:/fmu/resources");
+        assert_eq!(file_uri(Path::new("/tmp/é")), "file:///tmp/%C3%A9");
+    }
+}

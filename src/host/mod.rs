@@ -1,0 +1,52 @@
+//! The importer's side: opens any co-simulation FMU of FMI 2.0 or FMI 3.0 and steps it, alone or in a loop of two.
+//!
+//! ```no_run
+//! use maglev_fmu::host::{Fmu, Logging};
+//!
+//! let fmu = Fmu::open("Plant.fmu".as_ref())?;
+//! let mut plant = fmu.instantiate("plant", Logging::On)?;
+//! plant.set_by_name("mass", 0.5)?;
+//! plant.initialise(0.0, None)?;
+//! let position = plant.variable("position")?;
+//! for step in 0..1000 {
+//!     plant.step(f64::from(step) * 1e-4, 1e-4)?;
+//! }
+//! println!("{} m", plant.get(position)?);
+//! # Ok::<(), maglev_fmu::host::HostError>(())
+//! ```
+//!
+//! From the outside in: [`Fmu`] and [`Instance`] are what a user holds, [`TwoUnitLoop`] is the master,
+//! [`ModelDescription`] is the XML in one form for both versions; `fmi2` and `fmi3` hold the two C function tables.
+//! The module knows the C ABI and the XML only, so it drives anybody's FMU.
+
+mod archive;
+mod by_name;
+mod component;
+mod description;
+mod error;
+mod fmi2;
+mod fmi3;
+mod fmu;
+mod instance;
+mod journal;
+mod library;
+mod master;
+mod refusal;
+mod route;
+mod saved_state;
+mod trace;
+mod value;
+
+pub use archive::Archive;
+pub use description::{
+    Causality, CoSimulation, DefaultExperiment, EnumerationItem, FmiVersion, Kind, ModelDescription, Storage,
+    Variability, Variable,
+};
+pub use error::{HostError, ReportedStatus, Result};
+pub use fmu::Fmu;
+pub use instance::{Instance, Logging};
+pub use journal::LogMessage;
+pub use master::{ExchangeOrder, TwoUnitLoop};
+pub use saved_state::SavedState;
+pub use trace::Trace;
+pub use value::{Handle, Value};

@@ -1,0 +1,56 @@
+//! The two bearing units wired natively, without FMI, as a master in the controller-first order would.
+#![allow(dead_code, reason = "each test uses a part")]
+
+use maglev_fmu::unit::{MagneticBearingController, MagneticBearingPlant, Silence, Unit};
+
+/// Value of the variable called `name`.
+pub fn get(unit: &dyn Unit, name: &str) -> f64 {
+    unit.values()[reference(unit, name)]
+}
+
+/// Sets the variable called `name`.
+pub fn set(unit: &mut dyn Unit, name: &str, value: f64) {
+    let reference = reference(unit, name);
+    unit.values_mut()[reference] = value;
+}
+
+fn reference(unit: &dyn Unit, name: &str) -> usize {
+    unit.description().find(name).unwrap_or_else(|| panic!("no variable {name}")).0
+}
+
+/// Plant and controller after initialisation with some parameters.
+pub struct NativeLoop {
+    pub plant: MagneticBearingPlant,
+    pub controller: MagneticBearingController,
+    pub step_size: f64,
+}
+
+impl NativeLoop {
+    pub fn new(plant_values: &[(&str, f64)], controller_values: &[(&str, f64)]) -> Self {
+        let mut plant = MagneticBearingPlant::new();
+        let mut controller = MagneticBearingController::new();
+        plant_values.iter().for_each(|(name, value)| set(&mut plant, name, *value));
+        controller_values.iter().for_each(|(name, value)| set(&mut controller, name, *value));
+        plant.initialise(0.0).unwrap();
+        controller.initialise(0.0).unwrap();
+        Self { plant, controller, step_size: 1e-3 }
+    }
+
+    /// The controller reads the plant and ticks.
+    pub fn step_controller(&mut self) {
+        for (from, to) in [("position", "position"), ("velocity", "state.velocity"), ("flux", "state.flux")] {
+            let value = get(&self.plant, from);
+            set(&mut self.controller, to, value);
+        }
+        let acted = get(&self.plant, "voltage_measured");
+        set(&mut self.controller, "voltage_applied", acted);
+        self.controller.advance(self.step_size, &mut Silence).unwrap();
+    }
+
+    /// The plant takes the controller's voltage and moves on.
+    pub fn step_plant(&mut self) {
+        let voltage = get(&self.controller, "voltage");
+        set(&mut self.plant, "voltage", voltage);
+        self.plant.advance(self.step_size, &mut Silence).unwrap();
+    }
+}
