@@ -109,6 +109,7 @@ impl Unit for Baseline {
     fn values_mut(&mut self) -> &mut [f64] {
         self.controller.values_mut()
     }
+    fn adopt_parameters(&mut self) {}
     fn initialise(&mut self, start_time: f64) -> Result<(), UnitError> {
         self.clock = SampleClock::new(T, start_time);
         Ok(())

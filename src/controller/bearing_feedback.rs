@@ -26,15 +26,18 @@ pub struct Gains {
 /// u = (3 x1^2 + 2 x2 x3 |x3| + 3 x1 x2 - x3) / 2 + u0             (8b)
 /// u = -x2 |x3| - x3 - x1 x2 x3 + u0                               (8c)
 /// ```
+///
+/// All three are linear in the velocity and are evaluated as such, because the velocity is known last.
 #[inline]
 pub fn voltage(law: Law, gains: Gains, state: State) -> f64 {
     let State { position: x1, velocity: x2, flux: x3 } = state;
-    let u0 = -gains.position * x1 - gains.velocity * x2;
-    match law {
-        Law::A => -3.0 * x1 * x1 * x3 - 2.0 * x2 * x3.abs() - 3.0 * x1 * x2 * x3 - x3 + u0,
-        Law::B => (3.0 * x1 * x1 + 2.0 * x2 * x3 * x3.abs() + 3.0 * x1 * x2 - x3) / 2.0 + u0,
-        Law::C => -x2 * x3.abs() - x3 - x1 * x2 * x3 + u0,
-    }
+    let (k1, k2) = (gains.position, gains.velocity);
+    let (at_rest, damping) = match law {
+        Law::A => (-3.0 * x1 * x1 * x3 - x3, 2.0 * x3.abs() + 3.0 * x1 * x3 + k2),
+        Law::B => ((3.0 * x1 * x1 - x3) / 2.0, k2 - x3 * x3.abs() - 1.5 * x1),
+        Law::C => (-x3, x3.abs() + x1 * x3 + k2),
+    };
+    at_rest - k1 * x1 - damping * x2
 }
 
 #[cfg(test)]

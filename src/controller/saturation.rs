@@ -4,6 +4,10 @@
 /// non-finite can leave a law.
 #[inline]
 pub fn saturate(voltage: f64, limit: f64, held: f64) -> f64 {
+    // The usual case first: a predicted branch costs the control loop no latency.
+    if voltage.abs() <= limit {
+        return voltage;
+    }
     let voltage = if voltage.is_nan() { held } else { voltage };
     voltage.max(-limit).min(limit)
 }

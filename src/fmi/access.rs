@@ -39,16 +39,22 @@ impl Instance {
         values: &[T],
         convert: impl Fn(T) -> f64,
     ) -> Result<(), CallError> {
+        let mut parameters_changed = false;
         for (reference, value) in references.iter().zip(values) {
             let variable = self.find(data_type, *reference)?;
             require_settable(variable, self.phase)?;
             variable.check(convert(*value))?;
+            parameters_changed |= variable.causality == Causality::Parameter;
         }
         let target = self.unit.values_mut();
         for (reference, value) in references.iter().zip(values) {
             target[*reference as usize] = convert(*value);
         }
-        self.is_stale = self.phase != Phase::StepMode;
+        if self.phase != Phase::StepMode {
+            self.is_stale = true;
+        } else if parameters_changed {
+            self.unit.adopt_parameters();
+        }
         Ok(())
     }
 

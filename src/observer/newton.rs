@@ -9,7 +9,7 @@
 //! the second difference, and the other two follow by substitution. This is algebra, not approximation; the
 //! iterates are those of (6) for every d and alpha.
 
-use crate::plant::magnetic_bearing::{MagneticBearing, Map, State};
+use crate::plant::magnetic_bearing::{ForceEffect, MagneticBearing, Map, State};
 
 /// Relative size of the last flux correction up to which an estimate counts as converged.
 const CONVERGED: f64 = 1e-6;
@@ -80,27 +80,28 @@ impl NewtonObserver {
         self.positions = [window.positions[1], position];
         self.voltage = applied_voltage;
 
-        let solution = window.solve(settings, self.retarded);
-        let NewtonSettings { bearing, map, sample_time, .. } = *settings;
+        let Solution { state: oldest, effects, iterations, converged } =
+            window.solve(settings, self.retarded);
         // Steps 7 and 8 of the paper's algorithm: forward once for the next start, twice for the estimate.
-        let next = bearing.advance(map, solution.state, window.voltages[0], sample_time);
-        let state = bearing.advance(map, next, window.voltages[1], sample_time);
-        if !(next.is_finite() && state.is_finite()) {
+        let next = forward(oldest, effects[0], window.voltages[0], settings.sample_time);
+        let state = forward(next, effects[1], window.voltages[1], settings.sample_time);
+        // What is not finite in `next` is not finite in `state` either.
+        if !state.is_finite() {
             return Estimate {
                 state: self.estimate,
                 residual: largest_magnitude([position - self.estimate.position]),
-                iterations: solution.iterations,
+                iterations,
                 converged: false,
             };
         }
         self.retarded = next;
         self.estimate = state;
         let residual = largest_magnitude([
-            window.positions[0] - solution.state.position,
+            window.positions[0] - oldest.position,
             window.positions[1] - next.position,
             window.positions[2] - state.position,
         ]);
-        Estimate { state, residual, iterations: solution.iterations, converged: solution.converged }
+        Estimate { state, residual, iterations, converged }
     }
 }
 
@@ -115,6 +116,8 @@ struct Window {
 struct Solution {
     /// w_d, the state at the oldest sample of the window.
     state: State,
+    /// Force effects of the two steps that start from `state`.
+    effects: [ForceEffect; 2],
     iterations: u32,
     converged: bool,
 }
@@ -122,52 +125,116 @@ struct Solution {
 impl Window {
     /// Iterates (6) from `guess`; stops early once a further iteration could not change the flux by more than
     /// its last digit. An iteration whose result is not finite is dropped and ends the search.
+    #[inline]
     fn solve(&self, settings: &NewtonSettings, guess: State) -> Solution {
-        let NewtonSettings { bearing, map, sample_time, max_iterations, step_size } = *settings;
+        let NewtonSettings { sample_time, max_iterations, step_size, .. } = *settings;
         let [oldest, middle, newest] = self.positions;
-        let [first_voltage, second_voltage] = self.voltages;
         let rise = middle - oldest;
         let curvature = (newest - middle) - rise;
+        let rate = 1.0 / sample_time;
 
         let mut state = guess;
         let mut converged = false;
-        for iteration in 1..=max_iterations {
-            let middle_flux = state.flux + first_voltage * sample_time;
-            let first = bearing.force_effect(map, state.flux, first_voltage, sample_time);
-            let second = bearing.force_effect(map, middle_flux, second_voltage, sample_time);
-            let first_slope = bearing.force_effect_slope(map, state.flux, first_voltage, sample_time);
-            let second_slope = bearing.force_effect_slope(map, middle_flux, second_voltage, sample_time);
-
-            let modelled = sample_time * first.velocity + (second.position - first.position);
-            let slope = sample_time * first_slope.velocity + (second_slope.position - first_slope.position);
-            let correction = (curvature - modelled) / slope;
+        let mut iterations = 0;
+        while iterations < max_iterations {
+            iterations += 1;
+            let model = Linearisation::at(settings, state.flux, self.voltages);
+            // The newest voltage acts on the second step only and is known last: it enters last.
+            let [first, second] = model.effects;
+            let [first_slope, second_slope] = model.slopes;
+            let slope = (sample_time * first_slope.velocity - first_slope.position) + second_slope.position;
+            let unexplained = (curvature - (sample_time * first.velocity - first.position)) - second.position;
+            let correction = unexplained * (1.0 / slope);
             let fall = first.position + first_slope.position * correction;
-            let candidate = State {
-                position: state.position + step_size * (oldest - state.position),
-                velocity: state.velocity + step_size * ((rise - fall) / sample_time - state.velocity),
-                flux: state.flux + step_size * correction,
-            };
+            let solution =
+                State { position: oldest, velocity: (rise - fall) * rate, flux: state.flux + correction };
+            let candidate = if step_size == 1.0 { solution } else { between(state, solution, step_size) };
             if !candidate.is_finite() {
-                return Solution { state, iterations: iteration, converged: false };
+                converged = false;
+                break;
             }
-            let candidate_middle_flux = candidate.flux + first_voltage * sample_time;
-            let size = candidate.flux.abs().max(candidate_middle_flux.abs());
-            let same_branch = state.flux * candidate.flux > 0.0 && middle_flux * candidate_middle_flux > 0.0;
+            let middle_flux = candidate.flux + self.voltages[0] * sample_time;
+            let size = candidate.flux.abs().max(middle_flux.abs());
+            let same_branch = state.flux * candidate.flux > 0.0 && model.middle_flux * middle_flux > 0.0;
             state = candidate;
             converged = (step_size * correction).abs() <= CONVERGED * size;
             // Newton's next correction is at most c^2 max|f''| / (2 |f'|), and |f''| <= 4 T^2 on a branch.
             let next_correction = 2.0 * (sample_time * correction) * (sample_time * correction);
             if step_size == 1.0 && same_branch && next_correction <= slope.abs() * f64::EPSILON * size {
-                return Solution { state, iterations: iteration, converged };
+                // By the same bound the effects at the new flux follow from the linearisation to the last digit.
+                return Solution { state, effects: model.effects_after(correction), iterations, converged };
             }
         }
-        Solution { state, iterations: max_iterations, converged }
+        let effects = Linearisation::at(settings, state.flux, self.voltages).effects;
+        Solution { state, effects, iterations, converged }
     }
 }
 
-/// Maximum norm, finite also for differences that overflow.
+/// Force effects of the window's two steps and their derivatives, at a flux at its start.
+struct Linearisation {
+    /// x3 + u0 T
+    middle_flux: f64,
+    effects: [ForceEffect; 2],
+    slopes: [ForceEffect; 2],
+}
+
+impl Linearisation {
+    #[inline]
+    fn at(settings: &NewtonSettings, flux: f64, voltages: [f64; 2]) -> Self {
+        let NewtonSettings { bearing, map, sample_time, .. } = *settings;
+        let middle_flux = flux + voltages[0] * sample_time;
+        Self {
+            middle_flux,
+            effects: [
+                bearing.force_effect(map, flux, voltages[0], sample_time),
+                bearing.force_effect(map, middle_flux, voltages[1], sample_time),
+            ],
+            slopes: [
+                bearing.force_effect_slope(map, flux, voltages[0], sample_time),
+                bearing.force_effect_slope(map, middle_flux, voltages[1], sample_time),
+            ],
+        }
+    }
+
+    /// Effects once the flux has moved by a small `correction`.
+    #[inline]
+    fn effects_after(&self, correction: f64) -> [ForceEffect; 2] {
+        let [first, second] = self.effects;
+        let [first_slope, second_slope] = self.slopes;
+        let moved = |effect: ForceEffect, slope: ForceEffect| ForceEffect {
+            velocity: effect.velocity + slope.velocity * correction,
+            position: effect.position + slope.position * correction,
+        };
+        [moved(first, first_slope), moved(second, second_slope)]
+    }
+}
+
+/// The point that divides the way from `start` to `end` in the ratio of alpha to 1 - alpha (Remark 2).
+fn between(start: State, end: State, alpha: f64) -> State {
+    State {
+        position: start.position + alpha * (end.position - start.position),
+        velocity: start.velocity + alpha * (end.velocity - start.velocity),
+        flux: start.flux + alpha * (end.flux - start.flux),
+    }
+}
+
+/// F(x, u) with a known force effect.
+#[inline]
+fn forward(state: State, effect: ForceEffect, voltage: f64, sample_time: f64) -> State {
+    State {
+        position: state.position + sample_time * state.velocity + effect.position,
+        velocity: state.velocity + effect.velocity,
+        flux: state.flux + voltage * sample_time,
+    }
+}
+
+/// Maximum norm of finite numbers' differences, finite also when one overflows.
+#[inline]
 fn largest_magnitude<const N: usize>(differences: [f64; N]) -> f64 {
-    differences.iter().fold(0.0, |largest: f64, difference| largest.max(difference.abs())).min(f64::MAX)
+    differences.iter().fold(0.0, |largest, difference| {
+        let magnitude = difference.abs();
+        if magnitude > largest { f64::MAX.min(magnitude) } else { largest }
+    })
 }
 
 #[cfg(test)]

@@ -92,20 +92,19 @@ impl MagneticBearing {
     /// Terms of (4a) that stem from the force, with sgn(x3) replaced by `sign`. With z = x3 + u T they are
     ///
     /// ```text
-    /// velocity:  T (eps (x3 + z) / 2 + s (x3^2 + x3 z + z^2) / 3)
-    /// position:  T^2 (eps (2 x3 + z) / 6 + s (3 x3^2 + 2 x3 z + z^2) / 12)
+    /// velocity:  T (eps (x3 + z) / 2 + s (x3^2 + z (x3 + z)) / 3)
+    /// position:  T^2 (eps (2 x3 + z) / 6 + s (3 x3^2 + z (2 x3 + z)) / 12)
     /// ```
     #[inline]
     fn effect_with_sign(&self, sign: f64, flux: f64, voltage: f64, duration: f64) -> ForceEffect {
         let flux_after = flux + voltage * duration;
-        let (before, mixed, after) = (flux * flux, flux * flux_after, flux_after * flux_after);
-        let bias_velocity = self.epsilon * (0.5 * (flux + flux_after));
-        let bias_position = self.epsilon * ((2.0 * flux + flux_after) * (1.0 / 6.0));
+        let (once, twice) = (flux + flux_after, 2.0 * flux + flux_after);
+        let square = flux * flux;
+        let (third, twelfth) = (sign * duration * (1.0 / 3.0), sign * duration * duration * (1.0 / 12.0));
+        let (half, sixth) = (self.epsilon * duration * 0.5, self.epsilon * duration * duration * (1.0 / 6.0));
         ForceEffect {
-            velocity: duration * (bias_velocity + sign * ((before + mixed + after) * (1.0 / 3.0))),
-            position: duration
-                * duration
-                * (bias_position + sign * ((3.0 * before + 2.0 * mixed + after) * (1.0 / 12.0))),
+            velocity: half * once + third * (square + flux_after * once),
+            position: sixth * twice + twelfth * (3.0 * square + flux_after * twice),
         }
     }
 

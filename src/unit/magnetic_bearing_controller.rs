@@ -143,7 +143,11 @@ pub static DESCRIPTION: Description = Description {
 pub struct MagneticBearingController {
     values: [f64; COUNT],
     clock: SampleClock,
-    bearing: MagneticBearing,
+    settings: NewtonSettings,
+    law: Law,
+    gains: Gains,
+    feeds_back_state: bool,
+    hears_applied_voltage: bool,
     observer: NewtonObserver,
     /// Whether the first tick, which puts out u(0), is still to come.
     awaits_first_tick: bool,
@@ -152,12 +156,17 @@ pub struct MagneticBearingController {
 impl MagneticBearingController {
     /// The controller with the start values of its table.
     pub fn new() -> Self {
+        let values = start_values(&VARIABLES);
         Self {
-            values: start_values(&VARIABLES),
-            clock: SampleClock::new(1.0, 0.0),
-            bearing: MagneticBearing { epsilon: 0.0 },
-            observer: NewtonObserver::new(State::default()),
+            clock: SampleClock::new(values[SAMPLE_TIME], 0.0),
+            settings: settings(&values),
+            law: law(values[CONTROLLER_LAW]),
+            gains: gains(&values),
+            feeds_back_state: values[CONTROLLER_FEEDBACK] == STATE,
+            hears_applied_voltage: values[OBSERVER_VOLTAGE_SOURCE] == APPLIED,
+            observer: NewtonObserver::new(initial_estimate(&values)),
             awaits_first_tick: true,
+            values,
         }
     }
 
@@ -165,21 +174,10 @@ impl MagneticBearingController {
     #[inline]
     fn tick(&mut self, journal: &mut dyn Journal) {
         let values = &mut self.values;
-        let settings = NewtonSettings {
-            bearing: self.bearing,
-            map: map(values[OBSERVER_MAP]),
-            sample_time: values[SAMPLE_TIME],
-            max_iterations: values[MAX_ITERATIONS] as u32,
-            step_size: values[STEP_SIZE],
-        };
-        let acted = if values[OBSERVER_VOLTAGE_SOURCE] == APPLIED {
-            values[VOLTAGE_APPLIED]
-        } else {
-            values[VOLTAGE_OUTPUT]
-        };
-        let estimate = self.observer.update(&settings, values[POSITION], acted);
+        let acted = if self.hears_applied_voltage { values[VOLTAGE_APPLIED] } else { values[VOLTAGE_OUTPUT] };
+        let estimate = self.observer.update(&self.settings, values[POSITION], acted);
 
-        let fed_back = if values[CONTROLLER_FEEDBACK] == STATE {
+        let fed_back = if self.feeds_back_state {
             State { position: values[POSITION], velocity: values[STATE_VELOCITY], flux: values[STATE_FLUX] }
         } else {
             // The laws use the measured position, not its estimate.
@@ -188,8 +186,7 @@ impl MagneticBearingController {
         let wanted = if self.awaits_first_tick {
             values[INITIAL_VOLTAGE]
         } else {
-            let gains = Gains { position: values[K1], velocity: values[K2] };
-            bearing_feedback::voltage(law(values[CONTROLLER_LAW]), gains, fed_back)
+            bearing_feedback::voltage(self.law, self.gains, fed_back)
         };
         self.awaits_first_tick = false;
         values[VOLTAGE_OUTPUT] = saturate(wanted, values[VOLTAGE_LIMIT], values[VOLTAGE_OUTPUT]);
@@ -232,14 +229,18 @@ impl Unit for MagneticBearingController {
         &mut self.values
     }
 
+    fn adopt_parameters(&mut self) {
+        self.settings = settings(&self.values);
+        self.law = law(self.values[CONTROLLER_LAW]);
+        self.gains = gains(&self.values);
+        self.feeds_back_state = self.values[CONTROLLER_FEEDBACK] == STATE;
+        self.hears_applied_voltage = self.values[OBSERVER_VOLTAGE_SOURCE] == APPLIED;
+    }
+
     fn initialise(&mut self, start_time: f64) -> Result<(), UnitError> {
+        self.adopt_parameters();
         let values = &mut self.values;
-        let initial = State {
-            position: values[OBSERVER_INITIAL_POSITION],
-            velocity: values[OBSERVER_INITIAL_VELOCITY],
-            flux: values[OBSERVER_INITIAL_FLUX],
-        };
-        self.bearing = MagneticBearing::with_bias(values[BIAS_FLUX], values[SATURATION_FLUX]);
+        let initial = initial_estimate(values);
         self.clock = SampleClock::new(values[SAMPLE_TIME], start_time);
         self.observer = NewtonObserver::new(initial);
         self.awaits_first_tick = true;
@@ -264,6 +265,28 @@ impl Unit for MagneticBearingController {
 
     fn boxed_clone(&self) -> Box<dyn Unit> {
         Box::new(self.clone())
+    }
+}
+
+fn settings(values: &[f64; COUNT]) -> NewtonSettings {
+    NewtonSettings {
+        bearing: MagneticBearing::with_bias(values[BIAS_FLUX], values[SATURATION_FLUX]),
+        map: map(values[OBSERVER_MAP]),
+        sample_time: values[SAMPLE_TIME],
+        max_iterations: values[MAX_ITERATIONS] as u32,
+        step_size: values[STEP_SIZE],
+    }
+}
+
+fn gains(values: &[f64; COUNT]) -> Gains {
+    Gains { position: values[K1], velocity: values[K2] }
+}
+
+fn initial_estimate(values: &[f64; COUNT]) -> State {
+    State {
+        position: values[OBSERVER_INITIAL_POSITION],
+        velocity: values[OBSERVER_INITIAL_VELOCITY],
+        flux: values[OBSERVER_INITIAL_FLUX],
     }
 }
 

@@ -135,6 +135,9 @@ impl Unit for MagneticBearingPlant {
         &mut self.values
     }
 
+    /// Sensor and process noise are read from the values at each step.
+    fn adopt_parameters(&mut self) {}
+
     fn initialise(&mut self, start_time: f64) -> Result<(), UnitError> {
         let values = &mut self.values;
         self.bearing = MagneticBearing::with_bias(values[BIAS_FLUX], values[SATURATION_FLUX]);

@@ -62,6 +62,9 @@ pub trait Unit: Send {
     /// Values to set; the caller has checked them with [`variable::Variable::check`].
     fn values_mut(&mut self) -> &mut [f64];
 
+    /// Takes over tunable parameters that were set since the last step; initialisation does so, too.
+    fn adopt_parameters(&mut self);
+
     /// Computes all calculated values and the internal state from parameters and inputs at `start_time` \[s\].
     /// May be called again after a parameter changed, until the first [`Unit::advance`].
     fn initialise(&mut self, start_time: f64) -> Result<(), UnitError>;
