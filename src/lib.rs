@@ -3,6 +3,8 @@
 pub mod controller;
 pub mod fmi;
 pub mod observer;
+#[cfg(feature = "tools")]
+pub mod package;
 pub mod plant;
 pub mod signal;
 pub mod unit;
