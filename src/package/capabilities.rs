@@ -55,3 +55,9 @@ pub const CAPABILITIES: Capabilities = Capabilities {
     has_event_mode: false,
     provides_evaluate_discrete_states: false,
 };
+
+// Flags that the standards allow only together with another.
+const _: () = assert!(CAPABILITIES.can_get_and_set_fmu_state || !CAPABILITIES.can_serialize_fmu_state);
+const _: () = assert!(
+    CAPABILITIES.provides_intermediate_update || !CAPABILITIES.can_return_early_after_intermediate_update
+);
