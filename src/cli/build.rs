@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use maglev_fmu::package::{self, GenerationTime, Library, PackageError};
 
-use super::report;
+use super::{report, say};
 
 /// Pack all units for FMI 2.0 and FMI 3.0
 #[derive(Debug, Args)]
@@ -26,7 +26,7 @@ impl Build {
         };
         let time = GenerationTime::of_this_build()?;
         for library in &libraries {
-            println!("{} for {}, source as of {time}", library.path().display(), library.platform());
+            say(format_args!("{} for {}, source as of {time}", library.path().display(), library.platform()));
         }
         package::build(&self.out, &libraries, time)?.iter().for_each(report);
         Ok(())

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use maglev_fmu::package::{self, PackageError, Readme};
 
-use super::report;
+use super::{report, say};
 
 /// Write the model descriptions and the README's tables from the units' variables
 #[derive(Debug, Args)]
@@ -21,9 +21,9 @@ impl Describe {
         written.iter().for_each(report);
         match readme {
             Readme::Written(file) => report(&file),
-            Readme::Missing(path) => println!("no {}, so no tables there", path.display()),
+            Readme::Missing(path) => say(format_args!("no {}, so no tables there", path.display())),
             Readme::NoMarkers(path) => {
-                println!("{} left alone: it lacks the markers for tables", path.display());
+                say(format_args!("{} left alone: it lacks the markers for tables", path.display()));
             }
         }
         Ok(())

@@ -4,7 +4,8 @@ mod build;
 mod describe;
 
 use std::error::Error;
-use std::path::Path;
+use std::fmt;
+use std::io::{self, Write};
 
 use clap::{Parser, Subcommand};
 use maglev_fmu::package::WrittenFile;
@@ -36,5 +37,10 @@ impl CommandLine {
 
 /// Tells the user about a file.
 fn report(WrittenFile { path, size }: &WrittenFile) {
-    println!("{:>9.1} kB  {}", *size as f64 / 1e3, Path::display(path));
+    say(format_args!("{:>9.1} kB  {}", *size as f64 / 1e3, path.display()));
+}
+
+/// Prints a line. A reader that has seen enough, such as `head`, is no reason to fail.
+fn say(line: fmt::Arguments<'_>) {
+    let _ = writeln!(io::stdout(), "{line}");
 }
