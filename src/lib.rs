@@ -5,6 +5,8 @@ pub mod fmi;
 #[cfg(feature = "tools")]
 pub mod host;
 pub mod observer;
+#[cfg(feature = "tools")]
+pub mod package;
 pub mod plant;
 pub mod signal;
 pub mod unit;

@@ -1,0 +1,63 @@
+//! What the units declare to be able to do: the capability flags of both standards.
+
+/// Capability flags of a co-simulation unit, named as in FMI 3.0 where the standards differ in spelling.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Capabilities {
+    /// Communication steps may differ in size.
+    pub can_handle_variable_communication_step_size: bool,
+    /// FMI 2.0: `fmi2SetRealInputDerivatives` has an effect.
+    pub can_interpolate_inputs: bool,
+    /// Highest order of output derivatives that can be asked for.
+    pub max_output_derivative_order: u32,
+    /// FMI 2.0: `fmi2DoStep` may return before the step is over and go on in the background.
+    pub can_run_asynchronously: bool,
+    pub can_be_instantiated_only_once_per_process: bool,
+    /// FMI 2.0: the unit does not use the importer's functions for memory.
+    pub can_not_use_memory_management_functions: bool,
+    pub can_get_and_set_fmu_state: bool,
+    pub can_serialize_fmu_state: bool,
+    pub provides_directional_derivatives: bool,
+    /// The unit is only a link to a program that has to be installed.
+    pub needs_execution_tool: bool,
+    /// FMI 3.0.
+    pub provides_adjoint_derivatives: bool,
+    /// FMI 3.0: dependencies can be asked for at run time.
+    pub provides_per_element_dependencies: bool,
+    /// FMI 3.0: calls the importer back within a step.
+    pub provides_intermediate_update: bool,
+    /// FMI 3.0: a step may end before the importer's next communication point.
+    pub might_return_early_from_do_step: bool,
+    /// FMI 3.0: a step ends early when the importer asks for it within the step.
+    pub can_return_early_after_intermediate_update: bool,
+    /// FMI 3.0: events are handled by the importer.
+    pub has_event_mode: bool,
+    /// FMI 3.0: `fmi3EvaluateDiscreteStates` works.
+    pub provides_evaluate_discrete_states: bool,
+}
+
+/// Capabilities of every unit in the shared library.
+pub const CAPABILITIES: Capabilities = Capabilities {
+    can_handle_variable_communication_step_size: true,
+    can_interpolate_inputs: false,
+    max_output_derivative_order: 0,
+    can_run_asynchronously: false,
+    can_be_instantiated_only_once_per_process: false,
+    can_not_use_memory_management_functions: true,
+    can_get_and_set_fmu_state: false,
+    can_serialize_fmu_state: false,
+    provides_directional_derivatives: false,
+    needs_execution_tool: false,
+    provides_adjoint_derivatives: false,
+    provides_per_element_dependencies: false,
+    provides_intermediate_update: false,
+    might_return_early_from_do_step: false,
+    can_return_early_after_intermediate_update: false,
+    has_event_mode: false,
+    provides_evaluate_discrete_states: false,
+};
+
+// Flags that the standards allow only together with another.
+const _: () = assert!(CAPABILITIES.can_get_and_set_fmu_state || !CAPABILITIES.can_serialize_fmu_state);
+const _: () = assert!(
+    CAPABILITIES.provides_intermediate_update || !CAPABILITIES.can_return_early_after_intermediate_update
+);

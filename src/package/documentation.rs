@@ -1,0 +1,102 @@
+//! `documentation/index.html`: what the unit models, its variables, where it comes from.
+
+use std::borrow::Cow;
+
+use quick_xml::escape::escape;
+
+use super::model_description::enumerations;
+use super::{FmiVersion, GenerationTime, licenses, variable_text};
+use crate::unit::Description;
+
+const STYLE: &str = "\
+body { font-family: sans-serif; line-height: 1.45; max-width: 70em; margin: 2em auto; padding: 0 1em; color: #1d2733; }
+h1, h2 { color: #1f4e79; }
+table { border-collapse: collapse; width: 100%; font-size: 0.9em; }
+th, td { border-bottom: 1px solid #d5dde5; padding: 0.3em 0.6em; text-align: left; vertical-align: top; }
+th { background: #eef3f8; }
+code { font-family: monospace; white-space: nowrap; }
+";
+
+/// The documentation page, self-contained.
+pub fn documentation(description: &Description, version: FmiVersion, time: Option<GenerationTime>) -> String {
+    let name = description.name;
+    let summary = escape(description.summary);
+    let paragraphs = lines(description.documentation.iter().map(|text| format!("<p>{}</p>", escape(*text))));
+    let variables = lines(description.variables.iter().map(|variable| {
+        row([
+            code(variable.name),
+            variable_text::kind(variable).into(),
+            escape(variable_text::unit(variable)),
+            escape(variable_text::start(variable)),
+            escape(variable_text::range(variable)),
+            escape(variable.description),
+        ])
+    }));
+    let choices = choices(description);
+    let provenance = provenance(description, version, time);
+    format!(
+        "<!DOCTYPE html>
+<html lang=\"en\">
+<head>
+<meta charset=\"utf-8\">
+<title>{name}</title>
+<style>
+{STYLE}</style>
+</head>
+<body>
+<h1>{name}</h1>
+<p><strong>{summary}.</strong></p>
+{paragraphs}
+<h2>Variables</h2>
+<table>
+<tr><th>Name</th><th>Kind</th><th>Unit</th><th>Start</th><th>Range</th><th>Description</th></tr>
+{variables}
+</table>
+{choices}<h2>Provenance</h2>
+{provenance}
+</body>
+</html>
+"
+    )
+}
+
+/// The enumerations and what their items mean.
+fn choices(description: &Description) -> String {
+    let mut text = String::new();
+    for enumeration in enumerations(description) {
+        let items = enumeration.items.iter().map(|&(item, meaning)| row([code(item), escape(meaning)]));
+        text += &format!(
+            "<h2>Enumeration {}</h2>\n<p>{}.</p>\n<table>\n{}\n</table>\n",
+            escape(enumeration.name),
+            escape(enumeration.description),
+            lines(items)
+        );
+    }
+    text
+}
+
+fn provenance(description: &Description, version: FmiVersion, time: Option<GenerationTime>) -> String {
+    let time = time.map_or(String::new(), |time| format!(", source as of {time}"));
+    format!(
+        "<p>Exported for FMI {version} by maglev-fmu {}{time}. Library, model description and this page come from \
+         one table of variables; its token is <code>{}</code>.</p>\n\
+         <p>{}, {} license: <a href=\"licenses/license.txt\">license.txt</a>. The library contains software of \
+         others: <a href=\"licenses/THIRD-PARTY.txt\">THIRD-PARTY.txt</a>.</p>",
+        env!("CARGO_PKG_VERSION"),
+        description.token().as_str(),
+        licenses::COPYRIGHT,
+        licenses::NAME,
+    )
+}
+
+fn code(text: &str) -> Cow<'_, str> {
+    format!("<code>{}</code>", escape(text)).into()
+}
+
+fn row<const COLUMNS: usize>(cells: [Cow<'_, str>; COLUMNS]) -> String {
+    format!("<tr><td>{}</td></tr>", cells.join("</td><td>"))
+}
+
+fn lines(items: impl Iterator<Item = String>) -> String {
+    items.collect::<Vec<_>>().join("\n")
+}

@@ -1,0 +1,43 @@
+//! Why a package could not be made.
+
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use super::FmiVersion;
+
+/// Why packaging failed: the action and the path or value that it failed on.
+#[derive(Debug, Error)]
+pub enum PackageError {
+    #[error("cannot read {}", .path.display())]
+    Read { path: PathBuf, source: std::io::Error },
+    #[error("cannot write {}", .path.display())]
+    Write { path: PathBuf, source: std::io::Error },
+    #[error("cannot compress {}", .path.display())]
+    Archive { path: PathBuf, source: zip::result::ZipError },
+    #[error("cannot write the FMI {version} model description of {unit}")]
+    ModelDescription { unit: &'static str, version: FmiVersion, source: quick_xml::SeError },
+    #[error("unit {unit} has no icon: draw assets/{unit}.svg and list it in src/package/icon.rs")]
+    NoIcon { unit: &'static str },
+    #[error("cannot read the icon assets/{unit}.svg")]
+    Icon { unit: &'static str, source: resvg::usvg::Error },
+    #[error("cannot draw the icon assets/{unit}.svg: {reason}")]
+    DrawIcon { unit: &'static str, reason: String },
+    #[error("cannot find this program's own file, next to which the shared library lies")]
+    OwnPath { source: std::io::Error },
+    #[error(
+        "no shared library found, looked for {}: run `cargo build --release` first or give --library PATH",
+        list(.looked_at)
+    )]
+    NoLibrary { looked_at: Vec<PathBuf> },
+    #[error("{} is no 64-bit ELF, PE or Mach-O library for x86_64 or aarch64", .path.display())]
+    UnknownPlatform { path: PathBuf },
+    #[error("{} and {} are both for {platform}: expected one library per platform", .first.display(), .second.display())]
+    SamePlatform { first: PathBuf, second: PathBuf, platform: String },
+    #[error("SOURCE_DATE_EPOCH = {value:?}: expected seconds since 1970, 0 to {}", u32::MAX)]
+    SourceDateEpoch { value: String },
+}
+
+fn list(paths: &[PathBuf]) -> String {
+    paths.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ")
+}

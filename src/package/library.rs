@@ -1,0 +1,106 @@
+//! Shared libraries to pack.
+
+use std::path::{Path, PathBuf};
+use std::{env, fs};
+
+use super::{PackageError, Platform};
+
+/// Name of the library target, which differs from the package's in the dash.
+const LIBRARY_NAME: &str = "maglev_fmu";
+
+/// A shared library, read into memory.
+#[derive(Clone, Debug)]
+pub struct Library {
+    path: PathBuf,
+    platform: Platform,
+    bytes: Vec<u8>,
+}
+
+impl Library {
+    /// Reads the library at `path` and finds out what platform it is for.
+    pub fn read(path: &Path) -> Result<Self, PackageError> {
+        let bytes = fs::read(path).map_err(|source| PackageError::Read { path: path.to_owned(), source })?;
+        let platform = Platform::of_library(&bytes)
+            .ok_or_else(|| PackageError::UnknownPlatform { path: path.to_owned() })?;
+        Ok(Self { path: path.to_owned(), platform, bytes })
+    }
+
+    /// Reads several libraries, at most one per platform.
+    pub fn read_all(paths: &[PathBuf]) -> Result<Vec<Self>, PackageError> {
+        let mut libraries: Vec<Self> = Vec::new();
+        for path in paths {
+            let library = Self::read(path)?;
+            if let Some(first) = libraries.iter().find(|first| first.platform == library.platform) {
+                return Err(PackageError::SamePlatform {
+                    first: first.path.clone(),
+                    second: library.path,
+                    platform: library.platform.to_string(),
+                });
+            }
+            libraries.push(library);
+        }
+        Ok(libraries)
+    }
+
+    /// The library that was built together with the running program.
+    pub fn of_this_build() -> Result<Self, PackageError> {
+        let program = env::current_exe().map_err(|source| PackageError::OwnPath { source })?;
+        Self::read(&newest_library(program.parent().unwrap_or(Path::new(".")))?)
+    }
+
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    pub fn platform(&self) -> Platform {
+        self.platform
+    }
+
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+}
+
+/// The library in the program's directory, where `cargo build` and an installation put it, or in `deps` below,
+/// where `cargo run` leaves it: the one that was built last, `deps` if they are equally old.
+fn newest_library(directory: &Path) -> Result<PathBuf, PackageError> {
+    let name = format!("{}{LIBRARY_NAME}{}", env::consts::DLL_PREFIX, env::consts::DLL_SUFFIX);
+    let looked_at = [directory.join(&name), directory.join("deps").join(&name)];
+    let built_at = |path: &PathBuf| fs::metadata(path).and_then(|metadata| metadata.modified()).ok();
+    looked_at
+        .iter()
+        .filter_map(|path| Some((built_at(path)?, path)))
+        .max_by_key(|(time, _)| *time)
+        .map(|(_, path)| path.clone())
+        .ok_or_else(|| PackageError::NoLibrary { looked_at: looked_at.to_vec() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs::File;
+    use std::time::{Duration, SystemTime};
+
+    #[test]
+    fn the_newest_library_is_taken() {
+        let directory = tempfile::tempdir().unwrap();
+        let error = newest_library(directory.path()).unwrap_err().to_string();
+        assert!(error.contains("deps") && error.contains("--library"), "{error}");
+
+        let name = format!("{}{LIBRARY_NAME}{}", env::consts::DLL_PREFIX, env::consts::DLL_SUFFIX);
+        let (installed, built) = (directory.path().join(&name), directory.path().join("deps").join(&name));
+        fs::create_dir(built.parent().unwrap()).unwrap();
+        let time = SystemTime::UNIX_EPOCH + Duration::from_secs(1_000_000_000);
+        File::create(&installed).unwrap().set_modified(time).unwrap();
+        assert_eq!(newest_library(directory.path()).unwrap(), installed);
+        File::create(&built).unwrap().set_modified(time).unwrap();
+        assert_eq!(newest_library(directory.path()).unwrap(), built);
+        File::options()
+            .write(true)
+            .open(&installed)
+            .unwrap()
+            .set_modified(time + Duration::from_secs(1))
+            .unwrap();
+        assert_eq!(newest_library(directory.path()).unwrap(), installed);
+    }
+}

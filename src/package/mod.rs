@@ -1,0 +1,85 @@
+//! From a unit's variable table to a functional mock-up unit: model description, documentation, icon, archive.
+//!
+//! Everything here is written from the tables that the shared library is built from, never by loading the library,
+//! so units for another platform can be packaged as well.
+
+mod archive;
+pub mod capabilities;
+mod checked_in;
+mod contents;
+mod documentation;
+mod error;
+mod fmi_version;
+mod generation_time;
+mod icon;
+mod library;
+mod licenses;
+mod model_description;
+mod platform;
+mod variable_text;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+pub use archive::archive;
+pub use capabilities::{CAPABILITIES, Capabilities};
+pub use checked_in::{Readme, checked_in_files, describe, readme_with_tables};
+pub use contents::{Entry, contents};
+pub use error::PackageError;
+pub use fmi_version::FmiVersion;
+pub use generation_time::GenerationTime;
+pub use icon::{icon_png, icon_svg};
+pub use library::Library;
+pub use model_description::{LOG_CATEGORIES, model_description};
+pub use platform::Platform;
+
+use crate::unit::UNITS;
+
+/// A file that was written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WrittenFile {
+    pub path: PathBuf,
+    /// \[byte\]
+    pub size: usize,
+}
+
+/// Writes `directory/fmi2/<Unit>.fmu` and `directory/fmi3/<Unit>.fmu` for all units, each with all `libraries`.
+///
+/// The same arguments give the same bytes. An archive appears complete or not at all.
+pub fn build(
+    directory: &Path,
+    libraries: &[Library],
+    time: GenerationTime,
+) -> Result<Vec<WrittenFile>, PackageError> {
+    let mut written = Vec::new();
+    for version in FmiVersion::ALL {
+        let directory = directory.join(version.directory());
+        fs::create_dir_all(&directory)
+            .map_err(|source| PackageError::Write { path: directory.clone(), source })?;
+        for unit in UNITS {
+            let path = directory.join(unit.description.name).with_extension("fmu");
+            let entries = contents(unit.description, version, time, libraries)?;
+            let bytes = archive(&entries, time)
+                .map_err(|source| PackageError::Archive { path: path.clone(), source })?;
+            replace_file(&path, &bytes)?;
+            written.push(WrittenFile { path, size: bytes.len() });
+        }
+    }
+    Ok(written)
+}
+
+/// Writes a file under another name first, so that a failure leaves the old file or none.
+fn replace_file(path: &Path, contents: &[u8]) -> Result<(), PackageError> {
+    let failed = |source| PackageError::Write { path: path.to_owned(), source };
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // The process's umask takes away what it should.
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    let file = builder.tempfile_in(path.parent().unwrap_or(Path::new("."))).map_err(failed)?;
+    fs::write(file.path(), contents).map_err(failed)?;
+    file.persist(path).map_err(|error| failed(error.error))?;
+    Ok(())
+}

@@ -1,0 +1,40 @@
+//! `modelDescription.xml` of FMI 2.0 and FMI 3.0, written from a unit's variable table.
+
+mod common;
+mod fmi2;
+mod fmi3;
+mod log_categories;
+mod roles;
+mod terminals_and_icons;
+
+pub(super) use common::enumerations;
+pub use log_categories::LOG_CATEGORIES;
+use quick_xml::se::Serializer;
+use serde::Serialize;
+pub(super) use terminals_and_icons::terminals_and_icons;
+
+use super::{FmiVersion, GenerationTime, PackageError};
+use crate::unit::Description;
+
+/// The model description of a unit. `time` is left out of the file that is checked in.
+pub fn model_description(
+    description: &'static Description,
+    version: FmiVersion,
+    time: Option<GenerationTime>,
+) -> Result<String, PackageError> {
+    let text = match version {
+        FmiVersion::Two => document("fmiModelDescription", &fmi2::ModelDescription::new(description, time)),
+        FmiVersion::Three => document("fmiModelDescription", &fmi3::ModelDescription::new(description, time)),
+    };
+    text.map_err(|source| PackageError::ModelDescription { unit: description.name, version, source })
+}
+
+/// An XML document with the root element `root`.
+fn document(root: &str, content: &impl Serialize) -> Result<String, quick_xml::SeError> {
+    let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
+    let mut serializer = Serializer::with_root(&mut text, Some(root))?;
+    serializer.indent(' ', 2);
+    content.serialize(serializer)?;
+    text.push('\n');
+    Ok(text)
+}

@@ -1,0 +1,364 @@
+//! Rules of the standards that a schema does not check, on the XML of every unit.
+#![cfg(feature = "tools")]
+
+mod package_xml;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use maglev_fmu::package::{CAPABILITIES, FmiVersion, GenerationTime, model_description};
+use maglev_fmu::unit::variable::{Causality, Kind};
+use maglev_fmu::unit::{Description, UNITS};
+use package_xml::Element;
+
+/// A variable of either standard.
+struct Variable<'a> {
+    name: &'a str,
+    /// Element with causality, variability, initial.
+    head: &'a Element,
+    /// Element with type, start, min, max; the same as `head` in FMI 3.0.
+    value: &'a Element,
+}
+
+impl Variable<'_> {
+    fn number(&self, attribute: &str) -> Option<f64> {
+        self.value.attribute(attribute).map(|text| text.parse().unwrap())
+    }
+}
+
+fn variables(root: &Element) -> Vec<Variable<'_>> {
+    let elements = root.child("ModelVariables").children.iter();
+    elements
+        .map(|head| {
+            let value = if head.name == "ScalarVariable" { &head.children[0] } else { head };
+            Variable { name: head.attribute("name").unwrap(), head, value }
+        })
+        .collect()
+}
+
+/// Name to element of all type definitions; in FMI 2.0 the element inside `SimpleType`.
+fn types(root: &Element) -> BTreeMap<&str, &Element> {
+    let definitions = &root.child("TypeDefinitions").children;
+    let types: BTreeMap<&str, &Element> = definitions
+        .iter()
+        .map(|element| {
+            let definition = if element.name == "SimpleType" { &element.children[0] } else { element };
+            (element.attribute("name").unwrap(), definition)
+        })
+        .collect();
+    assert_eq!(types.len(), definitions.len(), "two types of one name");
+    types
+}
+
+/// Unit name to display unit names.
+fn units(root: &Element) -> BTreeMap<&str, Vec<&str>> {
+    let definitions = &root.child("UnitDefinitions").children;
+    assert!(definitions.iter().all(|element| element.children_named("BaseUnit").count() == 1));
+    let units: BTreeMap<&str, Vec<&str>> = definitions
+        .iter()
+        .map(|element| {
+            let names = element.children_named("DisplayUnit").map(|unit| unit.attribute("name").unwrap());
+            (element.attribute("name").unwrap(), names.collect())
+        })
+        .collect();
+    assert_eq!(units.len(), definitions.len(), "two units of one name");
+    units
+}
+
+fn check_all(check: impl Fn(&'static Description, FmiVersion, &Element)) {
+    for version in FmiVersion::ALL {
+        for unit in UNITS {
+            let text = model_description(unit.description, version, None).unwrap();
+            check(unit.description, version, &Element::parse(&text));
+        }
+    }
+}
+
+#[test]
+fn heads_name_the_unit_and_its_token() {
+    check_all(|description, version, root| {
+        let (fmi_version, token) = match version {
+            FmiVersion::Two => ("2.0", "guid"),
+            FmiVersion::Three => ("3.0", "instantiationToken"),
+        };
+        assert_eq!(root.name, "fmiModelDescription");
+        for (attribute, value) in [
+            ("fmiVersion", fmi_version),
+            ("modelName", description.name),
+            (token, description.token().as_str()),
+            ("version", env!("CARGO_PKG_VERSION")),
+            ("license", "MIT"),
+            ("variableNamingConvention", "structured"),
+        ] {
+            assert_eq!(root.attribute(attribute), Some(value), "{attribute}");
+        }
+        assert_eq!(root.attribute("generationDateAndTime"), None);
+        let identifier = root.child("CoSimulation").attribute("modelIdentifier").unwrap();
+        assert_eq!(identifier, description.name);
+        assert!(identifier.starts_with(|first: char| first.is_ascii_alphabetic()));
+        assert!(identifier.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_'));
+    });
+}
+
+#[test]
+fn packages_carry_their_time() {
+    let time = Some(GenerationTime::from_epoch_seconds(1_234_567_890));
+    for version in FmiVersion::ALL {
+        let root = Element::parse(&model_description(UNITS[0].description, version, time).unwrap());
+        assert_eq!(root.attribute("generationDateAndTime"), Some("2009-02-13T23:31:30Z"));
+    }
+}
+
+#[test]
+fn flags_are_those_of_the_library() {
+    check_all(|_, version, root| {
+        let flags = root.child("CoSimulation");
+        let mut expected = vec![
+            ("needsExecutionTool", CAPABILITIES.needs_execution_tool),
+            (
+                "canHandleVariableCommunicationStepSize",
+                CAPABILITIES.can_handle_variable_communication_step_size,
+            ),
+            ("canBeInstantiatedOnlyOncePerProcess", CAPABILITIES.can_be_instantiated_only_once_per_process),
+        ];
+        expected.extend(match version {
+            FmiVersion::Two => vec![
+                ("canInterpolateInputs", CAPABILITIES.can_interpolate_inputs),
+                ("canRunAsynchronuously", CAPABILITIES.can_run_asynchronously),
+                ("canNotUseMemoryManagementFunctions", CAPABILITIES.can_not_use_memory_management_functions),
+                ("canGetAndSetFMUstate", CAPABILITIES.can_get_and_set_fmu_state),
+                ("canSerializeFMUstate", CAPABILITIES.can_serialize_fmu_state),
+                ("providesDirectionalDerivative", CAPABILITIES.provides_directional_derivatives),
+            ],
+            FmiVersion::Three => vec![
+                ("canGetAndSetFMUState", CAPABILITIES.can_get_and_set_fmu_state),
+                ("canSerializeFMUState", CAPABILITIES.can_serialize_fmu_state),
+                ("providesDirectionalDerivatives", CAPABILITIES.provides_directional_derivatives),
+                ("providesAdjointDerivatives", CAPABILITIES.provides_adjoint_derivatives),
+                ("providesPerElementDependencies", CAPABILITIES.provides_per_element_dependencies),
+                ("providesIntermediateUpdate", CAPABILITIES.provides_intermediate_update),
+                ("mightReturnEarlyFromDoStep", CAPABILITIES.might_return_early_from_do_step),
+                (
+                    "canReturnEarlyAfterIntermediateUpdate",
+                    CAPABILITIES.can_return_early_after_intermediate_update,
+                ),
+                ("hasEventMode", CAPABILITIES.has_event_mode),
+                ("providesEvaluateDiscreteStates", CAPABILITIES.provides_evaluate_discrete_states),
+            ],
+        });
+        for (flag, value) in &expected {
+            assert_eq!(flags.attribute(flag), Some(value.to_string().as_str()), "{flag}");
+        }
+        let order = CAPABILITIES.max_output_derivative_order.to_string();
+        assert_eq!(flags.attribute("maxOutputDerivativeOrder"), Some(order.as_str()));
+        // Nothing but those, the order and the identifier.
+        assert_eq!(flags.attributes.len(), expected.len() + 2);
+    });
+}
+
+#[test]
+fn variables_are_the_rows_of_the_table() {
+    check_all(|description, version, root| {
+        let variables = variables(root);
+        assert_eq!(variables.len(), description.variables.len());
+        for (reference, (variable, row)) in variables.iter().zip(description.variables).enumerate() {
+            assert_eq!(variable.name, row.name);
+            assert_eq!(variable.head.attribute("valueReference"), Some(reference.to_string().as_str()));
+            let kind = match (version, row.kind) {
+                (FmiVersion::Two, Kind::Real(_)) => "Real",
+                (FmiVersion::Three, Kind::Real(_)) => "Float64",
+                (FmiVersion::Two, Kind::Integer) => "Integer",
+                (FmiVersion::Three, Kind::Integer) => "Int32",
+                (_, Kind::Boolean) => "Boolean",
+                (_, Kind::Enumeration(_)) => "Enumeration",
+            };
+            assert_eq!(variable.value.name, kind, "{}", row.name);
+        }
+    });
+}
+
+#[test]
+fn start_and_initial_follow_from_the_causality() {
+    check_all(|_, _, root| {
+        let mut independent = 0;
+        for variable in variables(root) {
+            let [causality, variability] =
+                ["causality", "variability"].map(|name| variable.head.attribute(name).unwrap());
+            let (initial, has_start) = match causality {
+                "parameter" => (Some("exact"), true),
+                "input" => (None, true),
+                "calculatedParameter" | "output" | "local" => (Some("calculated"), false),
+                "independent" => (None, false),
+                other => panic!("{} is {other}", variable.name),
+            };
+            assert_eq!(variable.head.attribute("initial"), initial, "{}", variable.name);
+            assert_eq!(variable.value.attribute("start").is_some(), has_start, "{}", variable.name);
+            let allowed: &[&str] = match causality {
+                "parameter" | "calculatedParameter" => &["fixed", "tunable"],
+                "independent" => &["continuous"],
+                _ => &["discrete", "continuous"],
+            };
+            assert!(allowed.contains(&variability), "{}: {variability}", variable.name);
+            let is_real = ["Real", "Float64"].contains(&variable.value.name.as_str());
+            assert!(is_real || variability != "continuous", "{} is no real number", variable.name);
+            independent += usize::from(causality == "independent");
+        }
+        assert_eq!(independent, 1);
+    });
+}
+
+#[test]
+fn starts_lie_between_minimum_and_maximum() {
+    check_all(|_, _, root| {
+        let types = types(root);
+        for variable in variables(root) {
+            let name = variable.name;
+            if variable.value.name == "Boolean" {
+                assert!(matches!(variable.value.attribute("start"), None | Some("true" | "false")));
+                continue;
+            }
+            let [minimum, start, maximum] = ["min", "start", "max"].map(|name| variable.number(name));
+            for number in [minimum, start, maximum].into_iter().flatten() {
+                assert!(number.is_finite(), "{name}");
+            }
+            let (minimum, maximum) = (minimum.unwrap_or(f64::MIN), maximum.unwrap_or(f64::MAX));
+            assert!(minimum <= maximum, "{name}");
+            let Some(start) = start else { continue };
+            assert!((minimum..=maximum).contains(&start), "{name} = {start}");
+            if variable.value.name == "Enumeration" {
+                let items = &types[variable.value.attribute("declaredType").unwrap()].children;
+                let number = start.to_string();
+                assert!(
+                    items.iter().any(|item| item.attribute("value") == Some(&number)),
+                    "{name} = {start}"
+                );
+            }
+        }
+    });
+}
+
+#[test]
+fn numbers_keep_all_their_digits() {
+    check_all(|description, _, root| {
+        for (variable, row) in variables(root).iter().zip(description.variables) {
+            if matches!(row.kind, Kind::Real(_)) && !row.is_calculated() {
+                assert_eq!(variable.number("start"), Some(row.start), "{}", row.name);
+            }
+        }
+    });
+}
+
+#[test]
+fn types_and_units_are_defined_and_used() {
+    check_all(|_, version, root| {
+        let (types, units) = (types(root), units(root));
+        let mut used = BTreeSet::new();
+        for variable in variables(root) {
+            assert!(!types.contains_key(variable.name), "{} is also a type", variable.name);
+            let declared = variable.value.attribute("declaredType");
+            match variable.value.name.as_str() {
+                "Real" | "Float64" => {
+                    let definition = types[declared.expect(variable.name)];
+                    let unit = definition.attribute("unit").unwrap();
+                    match version {
+                        FmiVersion::Two => assert_eq!(variable.value.attribute("unit"), Some(unit)),
+                        FmiVersion::Three => {
+                            for attribute in ["unit", "displayUnit", "nominal", "quantity"] {
+                                assert_eq!(variable.value.attribute(attribute), None, "{}", variable.name);
+                            }
+                        }
+                    }
+                    let display = definition.attribute("displayUnit");
+                    assert!(display.is_none_or(|name| units[unit].contains(&name)), "{display:?}");
+                    let nominal: f64 = definition.attribute("nominal").unwrap().parse().unwrap();
+                    assert!(nominal > 0.0);
+                }
+                "Enumeration" => {
+                    let items = &types[declared.expect(variable.name)].children;
+                    for attribute in ["name", "value"] {
+                        let distinct: BTreeSet<_> =
+                            items.iter().map(|item| item.attribute(attribute).unwrap()).collect();
+                        assert_eq!(distinct.len(), items.len(), "{declared:?}");
+                    }
+                }
+                _ => assert_eq!(declared, None),
+            }
+            used.extend(declared);
+        }
+        assert_eq!(used, types.keys().copied().collect());
+        let of_types: BTreeSet<_> = types.values().filter_map(|element| element.attribute("unit")).collect();
+        assert_eq!(of_types, units.keys().copied().collect());
+    });
+}
+
+#[test]
+fn structure_lists_outputs_and_initial_unknowns_exactly() {
+    check_all(|description, version, root| {
+        let structure = root.child("ModelStructure");
+        let (outputs, unknowns, key, offset): (Vec<&Element>, Vec<&Element>, _, _) = match version {
+            FmiVersion::Two => (
+                structure.child("Outputs").children.iter().collect(),
+                structure.child("InitialUnknowns").children.iter().collect(),
+                "index",
+                1,
+            ),
+            FmiVersion::Three => (
+                structure.children_named("Output").collect(),
+                structure.children_named("InitialUnknown").collect(),
+                "valueReference",
+                0,
+            ),
+        };
+        let row = |text: &str| text.parse::<usize>().unwrap() - offset;
+        let rows = |elements: &[&Element]| -> Vec<usize> {
+            elements.iter().map(|element| row(element.attribute(key).unwrap())).collect()
+        };
+        let with_causality = |wanted: &[Causality]| -> Vec<usize> {
+            let rows = description.variables.iter().enumerate();
+            rows.filter(|(_, row)| wanted.contains(&row.causality)).map(|(index, _)| index).collect()
+        };
+        assert_eq!(rows(&outputs), with_causality(&[Causality::Output]));
+        assert_eq!(rows(&unknowns), with_causality(&[Causality::Output, Causality::CalculatedParameter]));
+        assert!(outputs.iter().all(|output| output.attribute("dependencies") == Some("")));
+
+        for unknown in unknowns {
+            let variable = &description.variables[row(unknown.attribute(key).unwrap())];
+            let dependencies: Vec<usize> =
+                unknown.attribute("dependencies").unwrap().split_whitespace().map(row).collect();
+            assert!(dependencies.is_sorted_by(|a, b| a < b), "{}", variable.name);
+            let names: BTreeSet<&str> =
+                dependencies.iter().map(|known| description.variables[*known].name).collect();
+            assert_eq!(names, variable.initially_from.iter().copied().collect(), "{}", variable.name);
+            for known in &dependencies {
+                let causality = description.variables[*known].causality;
+                assert!(
+                    matches!(causality, Causality::Parameter | Causality::Input | Causality::Independent),
+                    "{} follows from what is no known of the initialisation",
+                    variable.name
+                );
+            }
+            let kinds = unknown.attribute("dependenciesKind").unwrap_or("").split_whitespace();
+            assert_eq!(kinds.collect::<Vec<_>>(), vec!["dependent"; dependencies.len()]);
+        }
+    });
+}
+
+#[test]
+fn experiment_and_log_categories_are_given() {
+    check_all(|description, _, root| {
+        let experiment = root.child("DefaultExperiment");
+        for (attribute, value) in
+            [("startTime", 0.0), ("stopTime", description.stop_time), ("stepSize", description.step_size)]
+        {
+            assert_eq!(experiment.attribute(attribute).unwrap().parse(), Ok(value));
+        }
+        assert_eq!(experiment.attribute("tolerance"), None);
+        let categories = &root.child("LogCategories").children;
+        let names: Vec<&str> =
+            categories.iter().map(|category| category.attribute("name").unwrap()).collect();
+        assert_eq!(
+            names,
+            ["logStatusError", "logStatusFatal", "logStatusWarning", "logEvents", "logObserver"]
+        );
+        assert!(categories.iter().all(|category| !category.attribute("description").unwrap().is_empty()));
+    });
+}
