@@ -30,7 +30,7 @@ pub use fmi_version::FmiVersion;
 pub use generation_time::GenerationTime;
 pub use icon::{icon_png, icon_svg};
 pub use library::Library;
-pub use model_description::{LOG_CATEGORIES, model_description};
+pub use model_description::model_description;
 pub use platform::Platform;
 
 use crate::unit::UNITS;

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::log_categories::LOG_CATEGORIES;
 use super::roles::literal;
+use crate::fmi::LOG_CATEGORIES;
 use crate::unit::Description;
 use crate::unit::quantity::{Enumeration, Quantity, RATIO, UnitOfMeasure};
 use crate::unit::variable::Kind;

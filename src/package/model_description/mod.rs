@@ -3,12 +3,11 @@
 mod common;
 mod fmi2;
 mod fmi3;
-mod log_categories;
 mod roles;
 mod terminals_and_icons;
 
 pub(super) use common::enumerations;
-pub use log_categories::LOG_CATEGORIES;
+
 use quick_xml::se::Serializer;
 use serde::Serialize;
 pub(super) use terminals_and_icons::terminals_and_icons;
