@@ -1,3 +1,28 @@
 //! State estimators, one per file.
 
 pub mod newton;
+
+use crate::plant::magnetic_bearing::State;
+
+/// Relative size of the last flux correction up to which an estimate counts as converged.
+const CONVERGED: f64 = 1e-6;
+
+/// Result of one sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// State at the newest sample.
+    pub state: State,
+    /// Largest component of Y - H(w) \[m\] after the last iteration; of the Kalman filter the size of the
+    /// innovation.
+    pub residual: f64,
+    /// Iterations made, at most d.
+    pub iterations: u32,
+    /// Whether the last iteration still moved the flux by less than a millionth of its size; of the Kalman filter
+    /// whether the innovation fits its standard deviation.
+    pub converged: bool,
+}
+
+/// Maximum norm, finite also for differences that overflow.
+fn largest_magnitude<const N: usize>(differences: [f64; N]) -> f64 {
+    differences.iter().fold(0.0, |largest: f64, difference| largest.max(difference.abs())).min(f64::MAX)
+}

@@ -9,10 +9,13 @@
 //! the second difference, and the other two follow by substitution. This is algebra, not approximation; the
 //! iterates are those of (6) for every d and alpha.
 
+use super::{CONVERGED, largest_magnitude};
 use crate::plant::magnetic_bearing::{MagneticBearing, Map, State};
 
-/// Relative size of the last flux correction up to which an estimate counts as converged.
-const CONVERGED: f64 = 1e-6;
+pub use super::Estimate;
+
+/// How often the line search halves a step before it gives up.
+pub(super) const MAX_HALVINGS: u32 = 40;
 
 /// What the observer knows of its plant and how hard it tries.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,19 +29,9 @@ pub struct NewtonSettings {
     pub max_iterations: u32,
     /// alpha of Remark 2, in (0, 1\].
     pub step_size: f64,
-}
-
-/// Result of one sample.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimate {
-    /// State at the newest sample.
-    pub state: State,
-    /// Largest component of Y - H(w) \[m\] after the last iteration.
-    pub residual: f64,
-    /// Iterations made, at most d.
-    pub iterations: u32,
-    /// Whether the last iteration still moved the flux by less than a millionth of its size.
-    pub converged: bool,
+    /// Varying step size of Remark 5: halves a step, from alpha on, until it decreases |Y - H(w)|. It helps a poor
+    /// start: from nearly zero flux a full step overshoots the more the smaller the slope.
+    pub line_search: bool,
 }
 
 /// Two past samples and the starting point of the next inversion.
@@ -80,7 +73,11 @@ impl NewtonObserver {
         self.positions = [window.positions[1], position];
         self.voltage = applied_voltage;
 
-        let solution = window.solve(settings, self.retarded);
+        let solution = if settings.line_search {
+            window.solve::<true>(settings, self.retarded)
+        } else {
+            window.solve::<false>(settings, self.retarded)
+        };
         let NewtonSettings { bearing, map, sample_time, .. } = *settings;
         // Steps 7 and 8 of the paper's algorithm: forward once for the next start, twice for the estimate.
         let next = bearing.advance(map, solution.state, window.voltages[0], sample_time);
@@ -122,8 +119,11 @@ struct Solution {
 impl Window {
     /// Iterates (6) from `guess`; stops early once a further iteration could not change the flux by more than
     /// its last digit. An iteration whose result is not finite is dropped and ends the search.
-    fn solve(&self, settings: &NewtonSettings, guess: State) -> Solution {
-        let NewtonSettings { bearing, map, sample_time, max_iterations, step_size } = *settings;
+    /// Two copies, so that the line search does not burden the plain iteration; inlined into their caller both are
+    /// a quarter slower.
+    #[inline(never)]
+    fn solve<const LINE_SEARCH: bool>(&self, settings: &NewtonSettings, guess: State) -> Solution {
+        let NewtonSettings { bearing, map, sample_time, max_iterations, step_size, .. } = *settings;
         let [oldest, middle, newest] = self.positions;
         let [first_voltage, second_voltage] = self.voltages;
         let rise = middle - oldest;
@@ -142,11 +142,13 @@ impl Window {
             let slope = sample_time * first_slope.velocity + (second_slope.position - first_slope.position);
             let correction = (curvature - modelled) / slope;
             let fall = first.position + first_slope.position * correction;
-            let candidate = State {
-                position: state.position + step_size * (oldest - state.position),
-                velocity: state.velocity + step_size * ((rise - fall) / sample_time - state.velocity),
-                flux: state.flux + step_size * correction,
+            let step = State {
+                position: oldest - state.position,
+                velocity: (rise - fall) / sample_time - state.velocity,
+                flux: correction,
             };
+            let length = if LINE_SEARCH { self.step_length(settings, state, step) } else { step_size };
+            let candidate = moved(state, step, length);
             if !candidate.is_finite() {
                 return Solution { state, iterations: iteration, converged: false };
             }
@@ -154,20 +156,53 @@ impl Window {
             let size = candidate.flux.abs().max(candidate_middle_flux.abs());
             let same_branch = state.flux * candidate.flux > 0.0 && middle_flux * candidate_middle_flux > 0.0;
             state = candidate;
-            converged = (step_size * correction).abs() <= CONVERGED * size;
+            converged = (length * correction).abs() <= CONVERGED * size;
             // Newton's next correction is at most c^2 max|f''| / (2 |f'|), and |f''| <= 4 T^2 on a branch.
             let next_correction = 2.0 * (sample_time * correction) * (sample_time * correction);
-            if step_size == 1.0 && same_branch && next_correction <= slope.abs() * f64::EPSILON * size {
+            if length == 1.0 && same_branch && next_correction <= slope.abs() * f64::EPSILON * size {
                 return Solution { state, iterations: iteration, converged };
             }
         }
         Solution { state, iterations: max_iterations, converged }
     }
+
+    /// alpha, halved until the step decreases |Y - H(w)|; alpha also where no length of it does, or the step is
+    /// too small for the residual to tell.
+    fn step_length(&self, settings: &NewtonSettings, start: State, step: State) -> f64 {
+        let full = settings.step_size;
+        if step.flux.abs() <= CONVERGED * start.flux.abs() {
+            return full;
+        }
+        let before = self.squared_residual(settings, start);
+        let mut length = full;
+        for _ in 0..MAX_HALVINGS {
+            if self.squared_residual(settings, moved(start, step, length)) < before {
+                return length;
+            }
+            length /= 2.0;
+        }
+        full
+    }
+
+    /// |Y - H(w)|^2 \[m2\]
+    fn squared_residual(&self, settings: &NewtonSettings, w: State) -> f64 {
+        let NewtonSettings { bearing, map, sample_time, .. } = *settings;
+        let first = bearing.advance(map, w, self.voltages[0], sample_time);
+        let second = bearing.advance(map, first, self.voltages[1], sample_time);
+        let [oldest, middle, newest] = self.positions;
+        let residuals = [oldest - w.position, middle - first.position, newest - second.position];
+        residuals.iter().map(|residual| residual * residual).sum()
+    }
 }
 
-/// Maximum norm, finite also for differences that overflow.
-fn largest_magnitude<const N: usize>(differences: [f64; N]) -> f64 {
-    differences.iter().fold(0.0, |largest: f64, difference| largest.max(difference.abs())).min(f64::MAX)
+/// w + lambda * step
+#[inline]
+pub(super) fn moved(w: State, step: State, length: f64) -> State {
+    State {
+        position: w.position + length * step.position,
+        velocity: w.velocity + length * step.velocity,
+        flux: w.flux + length * step.flux,
+    }
 }
 
 #[cfg(test)]
@@ -187,6 +222,7 @@ mod tests {
             sample_time: T,
             max_iterations,
             step_size,
+            line_search: false,
         }
     }
 
@@ -226,7 +262,7 @@ mod tests {
         fn residual_at_the_truth_is_zero((truth, voltages, _) in problem(), epsilon in 0.0..1.0f64) {
             let settings = settings(Map::Exact, 10, 1.0, epsilon);
             let positions = outputs(&settings, truth, voltages).into();
-            let solution = Window { positions, voltages }.solve(&settings, truth);
+            let solution = Window { positions, voltages }.solve::<false>(&settings, truth);
             prop_assert!((vector(solution.state) - vector(truth)).amax() < 1e-10);
             prop_assert!(solution.converged && solution.iterations <= 2);
         }
