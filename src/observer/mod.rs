@@ -1,6 +1,7 @@
 //! State estimators, one per file.
 
 pub mod newton;
+pub mod reduced_newton;
 
 use crate::plant::magnetic_bearing::State;
 
