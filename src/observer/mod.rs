@@ -2,6 +2,7 @@
 
 pub mod newton;
 pub mod reduced_newton;
+pub mod windowed_newton;
 
 use crate::plant::magnetic_bearing::State;
 
