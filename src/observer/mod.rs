@@ -1,5 +1,7 @@
 //! State estimators, one per file.
 
+pub mod factored_covariance;
+pub mod kalman;
 pub mod newton;
 pub mod reduced_newton;
 pub mod windowed_newton;
