@@ -79,7 +79,7 @@ proptest! {
     ) {
         let step_size = if damped { alpha } else { 1.0 };
         let bearing = MagneticBearing { epsilon };
-        let settings = NewtonSettings { bearing, map: Map::Printed, sample_time: T, max_iterations: d, step_size };
+        let settings = NewtonSettings { bearing, map: Map::Printed, sample_time: T, max_iterations: d, step_size, line_search: false };
         let y: [f64; 3] = literal::outputs(x, u, epsilon, T).into();
         let w = literal::invert(y, u, guess, d, step_size, epsilon, T).expect("away from the singularity");
         let forward = literal::printed_map(literal::printed_map(w, u[0], epsilon, T), u[1], epsilon, T);
@@ -95,7 +95,7 @@ proptest! {
         let u = if reversed { u.map(|voltage| -2.0 * voltage) } else { u };
         let bearing = MagneticBearing { epsilon };
         let map = Map::Exact;
-        let settings = NewtonSettings { bearing, map, sample_time: T, max_iterations: d, step_size: 1.0 };
+        let settings = NewtonSettings { bearing, map, sample_time: T, max_iterations: d, step_size: 1.0, line_search: false };
         let first = bearing.advance(map, state(x), u[0], T);
         let second = bearing.advance(map, first, u[1], T);
         let y = [x[0], first.position, second.position];

@@ -355,10 +355,7 @@ fn experiment_and_log_categories_are_given() {
         let categories = &root.child("LogCategories").children;
         let names: Vec<&str> =
             categories.iter().map(|category| category.attribute("name").unwrap()).collect();
-        assert_eq!(
-            names,
-            ["logStatusError", "logStatusFatal", "logStatusWarning", "logEvents", "logObserver"]
-        );
+        assert_eq!(names, ["logStatusError", "logStatusFatal", "logEvents", "logObserver"]);
         assert!(categories.iter().all(|category| !category.attribute("description").unwrap().is_empty()));
     });
 }

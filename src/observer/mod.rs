@@ -1,3 +1,36 @@
 //! State estimators, one per file.
 
+pub mod factored_covariance;
+pub mod kalman;
 pub mod newton;
+pub mod reduced_newton;
+pub mod windowed_newton;
+
+use crate::plant::magnetic_bearing::State;
+
+/// Relative size of the last flux correction up to which an estimate counts as converged.
+const CONVERGED: f64 = 1e-6;
+
+/// Result of one sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// State at the newest sample.
+    pub state: State,
+    /// Largest component of Y - H(w) \[m\] after the last iteration; of the Kalman filter the size of the
+    /// innovation.
+    pub residual: f64,
+    /// Iterations made, at most d.
+    pub iterations: u32,
+    /// Whether the last iteration still moved the flux by less than a millionth of its size; of the Kalman filter
+    /// whether the innovation fits its standard deviation.
+    pub converged: bool,
+}
+
+/// Maximum norm of finite numbers' differences, finite also when one overflows.
+#[inline]
+fn largest_magnitude<const N: usize>(differences: [f64; N]) -> f64 {
+    differences.iter().fold(0.0, |largest, difference| {
+        let magnitude = difference.abs();
+        if magnitude > largest { f64::MAX.min(magnitude) } else { largest }
+    })
+}

@@ -9,10 +9,13 @@
 //! the second difference, and the other two follow by substitution. This is algebra, not approximation; the
 //! iterates are those of (6) for every d and alpha.
 
+use super::{CONVERGED, largest_magnitude};
 use crate::plant::magnetic_bearing::{ForceEffect, MagneticBearing, Map, State};
 
-/// Relative size of the last flux correction up to which an estimate counts as converged.
-const CONVERGED: f64 = 1e-6;
+pub use super::Estimate;
+
+/// How often the line search halves a step before it gives up.
+pub(super) const MAX_HALVINGS: u32 = 40;
 
 /// What the observer knows of its plant and how hard it tries.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,19 +29,9 @@ pub struct NewtonSettings {
     pub max_iterations: u32,
     /// alpha of Remark 2, in (0, 1\].
     pub step_size: f64,
-}
-
-/// Result of one sample.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimate {
-    /// State at the newest sample.
-    pub state: State,
-    /// Largest component of Y - H(w) \[m\] after the last iteration.
-    pub residual: f64,
-    /// Iterations made, at most d.
-    pub iterations: u32,
-    /// Whether the last iteration still moved the flux by less than a millionth of its size.
-    pub converged: bool,
+    /// Varying step size of Remark 5: halves a step, from alpha on, until it decreases |Y - H(w)|. It helps a poor
+    /// start: from nearly zero flux a full step overshoots the more the smaller the slope.
+    pub line_search: bool,
 }
 
 /// Two past samples and the starting point of the next inversion.
@@ -81,7 +74,11 @@ impl NewtonObserver {
         self.voltage = applied_voltage;
 
         let Solution { state: oldest, effects, iterations, converged } =
-            window.solve(settings, self.retarded);
+            if settings.step_size == 1.0 && !settings.line_search {
+                window.solve::<true>(settings, self.retarded)
+            } else {
+                window.solve::<false>(settings, self.retarded)
+            };
         // Steps 7 and 8 of the paper's algorithm: forward once for the next start, twice for the estimate.
         let next = forward(oldest, effects[0], window.voltages[0], settings.sample_time);
         let state = forward(next, effects[1], window.voltages[1], settings.sample_time);
@@ -125,9 +122,11 @@ struct Solution {
 impl Window {
     /// Iterates (6) from `guess`; stops early once a further iteration could not change the flux by more than
     /// its last digit. An iteration whose result is not finite is dropped and ends the search.
+    ///
+    /// The usual case of full steps (`FULL_STEPS`) is compiled on its own, without a step length.
     #[inline]
-    fn solve(&self, settings: &NewtonSettings, guess: State) -> Solution {
-        let NewtonSettings { sample_time, max_iterations, step_size, .. } = *settings;
+    fn solve<const FULL_STEPS: bool>(&self, settings: &NewtonSettings, guess: State) -> Solution {
+        let NewtonSettings { sample_time, max_iterations, .. } = *settings;
         let [oldest, middle, newest] = self.positions;
         let rise = middle - oldest;
         let curvature = (newest - middle) - rise;
@@ -146,9 +145,18 @@ impl Window {
             let unexplained = (curvature - (sample_time * first.velocity - first.position)) - second.position;
             let correction = unexplained * (1.0 / slope);
             let fall = first.position + first_slope.position * correction;
-            let solution =
-                State { position: oldest, velocity: (rise - fall) * rate, flux: state.flux + correction };
-            let candidate = if step_size == 1.0 { solution } else { between(state, solution, step_size) };
+            let velocity = (rise - fall) * rate;
+            let (candidate, length) = if FULL_STEPS {
+                (State { position: oldest, velocity, flux: state.flux + correction }, 1.0)
+            } else {
+                let step = State {
+                    position: oldest - state.position,
+                    velocity: velocity - state.velocity,
+                    flux: correction,
+                };
+                let length = self.step_length(settings, state, step);
+                (moved(state, step, length), length)
+            };
             if !candidate.is_finite() {
                 converged = false;
                 break;
@@ -157,16 +165,44 @@ impl Window {
             let size = candidate.flux.abs().max(middle_flux.abs());
             let same_branch = state.flux * candidate.flux > 0.0 && model.middle_flux * middle_flux > 0.0;
             state = candidate;
-            converged = (step_size * correction).abs() <= CONVERGED * size;
+            converged = (length * correction).abs() <= CONVERGED * size;
             // Newton's next correction is at most c^2 max|f''| / (2 |f'|), and |f''| <= 4 T^2 on a branch.
             let next_correction = 2.0 * (sample_time * correction) * (sample_time * correction);
-            if step_size == 1.0 && same_branch && next_correction <= slope.abs() * f64::EPSILON * size {
+            if length == 1.0 && same_branch && next_correction <= slope.abs() * f64::EPSILON * size {
                 // By the same bound the effects at the new flux follow from the linearisation to the last digit.
                 return Solution { state, effects: model.effects_after(correction), iterations, converged };
             }
         }
         let effects = Linearisation::at(settings, state.flux, self.voltages).effects;
         Solution { state, effects, iterations, converged }
+    }
+
+    /// alpha, with a line search halved until the step decreases |Y - H(w)|; alpha also where no length of it does,
+    /// or the step is too small for the residual to tell.
+    fn step_length(&self, settings: &NewtonSettings, start: State, step: State) -> f64 {
+        let full = settings.step_size;
+        if !settings.line_search || step.flux.abs() <= CONVERGED * start.flux.abs() {
+            return full;
+        }
+        let before = self.squared_residual(settings, start);
+        let mut length = full;
+        for _ in 0..MAX_HALVINGS {
+            if self.squared_residual(settings, moved(start, step, length)) < before {
+                return length;
+            }
+            length /= 2.0;
+        }
+        full
+    }
+
+    /// |Y - H(w)|^2 \[m2\]
+    fn squared_residual(&self, settings: &NewtonSettings, w: State) -> f64 {
+        let NewtonSettings { bearing, map, sample_time, .. } = *settings;
+        let first = bearing.advance(map, w, self.voltages[0], sample_time);
+        let second = bearing.advance(map, first, self.voltages[1], sample_time);
+        let [oldest, middle, newest] = self.positions;
+        let residuals = [oldest - w.position, middle - first.position, newest - second.position];
+        residuals.iter().map(|residual| residual * residual).sum()
     }
 }
 
@@ -209,12 +245,13 @@ impl Linearisation {
     }
 }
 
-/// The point that divides the way from `start` to `end` in the ratio of alpha to 1 - alpha (Remark 2).
-fn between(start: State, end: State, alpha: f64) -> State {
+/// w + lambda * step
+#[inline]
+pub(super) fn moved(w: State, step: State, length: f64) -> State {
     State {
-        position: start.position + alpha * (end.position - start.position),
-        velocity: start.velocity + alpha * (end.velocity - start.velocity),
-        flux: start.flux + alpha * (end.flux - start.flux),
+        position: w.position + length * step.position,
+        velocity: w.velocity + length * step.velocity,
+        flux: w.flux + length * step.flux,
     }
 }
 
@@ -226,15 +263,6 @@ fn forward(state: State, effect: ForceEffect, voltage: f64, sample_time: f64) ->
         velocity: state.velocity + effect.velocity,
         flux: state.flux + voltage * sample_time,
     }
-}
-
-/// Maximum norm of finite numbers' differences, finite also when one overflows.
-#[inline]
-fn largest_magnitude<const N: usize>(differences: [f64; N]) -> f64 {
-    differences.iter().fold(0.0, |largest, difference| {
-        let magnitude = difference.abs();
-        if magnitude > largest { f64::MAX.min(magnitude) } else { largest }
-    })
 }
 
 #[cfg(test)]
@@ -254,6 +282,7 @@ mod tests {
             sample_time: T,
             max_iterations,
             step_size,
+            line_search: false,
         }
     }
 
@@ -293,7 +322,7 @@ mod tests {
         fn residual_at_the_truth_is_zero((truth, voltages, _) in problem(), epsilon in 0.0..1.0f64) {
             let settings = settings(Map::Exact, 10, 1.0, epsilon);
             let positions = outputs(&settings, truth, voltages).into();
-            let solution = Window { positions, voltages }.solve(&settings, truth);
+            let solution = Window { positions, voltages }.solve::<true>(&settings, truth);
             prop_assert!((vector(solution.state) - vector(truth)).amax() < 1e-10);
             prop_assert!(solution.converged && solution.iterations <= 2);
         }

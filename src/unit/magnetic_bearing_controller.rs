@@ -275,6 +275,7 @@ fn settings(values: &[f64; COUNT]) -> NewtonSettings {
         sample_time: values[SAMPLE_TIME],
         max_iterations: values[MAX_ITERATIONS] as u32,
         step_size: values[STEP_SIZE],
+        line_search: false,
     }
 }
 
