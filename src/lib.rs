@@ -9,4 +9,6 @@ pub mod observer;
 pub mod package;
 pub mod plant;
 pub mod signal;
+#[cfg(feature = "tools")]
+pub mod study;
 pub mod unit;

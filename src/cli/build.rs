@@ -18,6 +18,12 @@ pub struct Build {
     libraries: Vec<PathBuf>,
 }
 
+impl Default for Build {
+    fn default() -> Self {
+        Self { out: "dist".into(), libraries: Vec::new() }
+    }
+}
+
 impl Build {
     pub fn run(&self) -> Result<(), PackageError> {
         let libraries = match self.libraries.as_slice() {

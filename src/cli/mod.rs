@@ -2,6 +2,7 @@
 
 mod build;
 mod describe;
+mod reproduce;
 
 use std::error::Error;
 use std::fmt;
@@ -11,16 +12,19 @@ use clap::{Parser, Subcommand};
 use maglev_fmu::package::WrittenFile;
 
 /// Magnetic levitation and magnetic bearings as FMI 2.0 and FMI 3.0 units.
+///
+/// Without a command: builds the units into dist, reproduces everything into results and prints the verdicts.
 #[derive(Debug, Parser)]
-#[command(version, arg_required_else_help = true)]
+#[command(version)]
 pub struct CommandLine {
     #[command(subcommand)]
-    command: Command,
+    command: Option<Command>,
 }
 
 #[derive(Debug, Subcommand)]
 enum Command {
     Build(build::Build),
+    Reproduce(reproduce::Reproduce),
     Describe(describe::Describe),
 }
 
@@ -28,10 +32,14 @@ impl CommandLine {
     /// Does what was asked for.
     pub fn run(self) -> Result<(), Box<dyn Error>> {
         match self.command {
-            Command::Build(command) => command.run()?,
-            Command::Describe(command) => command.run()?,
+            None => {
+                build::Build::default().run()?;
+                reproduce::Reproduce::default().run()
+            }
+            Some(Command::Build(command)) => Ok(command.run()?),
+            Some(Command::Reproduce(command)) => command.run(),
+            Some(Command::Describe(command)) => Ok(command.run()?),
         }
-        Ok(())
     }
 }
 

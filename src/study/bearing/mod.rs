@@ -1,0 +1,106 @@
+//! Figures 2 to 6 and the claims of the magnetic bearing paper (Mystkowski, Kotta, Kaparin 2018).
+
+mod claims;
+mod figures;
+mod scenario;
+
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+
+use super::{Findings, Progress, StudyError};
+pub use scenario::{Bearing, Feedback, Run, Scenario};
+
+/// Simulation time of Table 1 \[s\].
+const SIMULATION_TIME: f64 = 10.0;
+/// T of Table 1 \[s\].
+const SAMPLE_TIME: f64 = 1e-3;
+/// Options of Table 1 for x1(0) \[m\].
+const POSITIONS: [f64; 3] = [0.0, 0.001, 0.01];
+/// Options of Table 1 for u(0) \[V\].
+const VOLTAGES: [f64; 3] = [-50.0, -100.0, -150.0];
+const LAWS: [&str; 3] = ["a", "b", "c"];
+/// Bias fluxes of figure 6 \[Wb\].
+const BIAS_FLUXES: [f64; 3] = [0.0, 100e-6, 1000e-6];
+
+const PROVENANCE: &[&str] = &[
+    "Source: A. Mystkowski, Ü. Kotta, V. Kaparin, Newton observer for a nonlinear flux-controlled AMB system, \
+     Proc. Estonian Acad. Sci. 67(1), 61-72, 2018. Printed there: the plant (3), its discrete-time model (4), the \
+     observer, the laws (8) and Table 1. The paper's pictures were not at hand; the figures here follow its captions \
+     and its text.",
+    "Chosen here where the paper is silent: figures 4 to 6 start from x1(0) = 0.01 m, and figures 2, 3, 5 and 6 from \
+     u(0) = -150 V; until two past samples exist the estimate is the measured position with the observer's initial \
+     velocity and flux. The plant is solved exactly; the observer inverts the model (4a) as printed, d = 10.",
+];
+
+/// Runs everything through the packages in `packages`.
+pub fn run(packages: &Path, progress: Progress<'_>) -> Result<Findings, StudyError> {
+    progress(0.0, "bearing: opening the packages");
+    let bearing = Bearing::open(packages)?;
+    let runs = Runs::simulate(&bearing, progress)?;
+    Ok(Findings {
+        name: "bearing",
+        title: "Newton observer for a flux-controlled magnetic bearing",
+        provenance: PROVENANCE,
+        figures: figures::all(&runs),
+        claims: claims::all(&bearing, &runs)?,
+    })
+}
+
+/// All runs that figures and claims look at.
+struct Runs {
+    /// Laws, positions and voltages of Table 1 without bias: `[law][position][voltage]`, observer in the loop.
+    grid: Vec<Run>,
+    /// Law (8a) with state feedback: `[position][voltage]`.
+    state_feedback: Vec<Run>,
+    /// Law (8a) for the bias fluxes of figure 6.
+    biased: Vec<Run>,
+    /// Law (8a) with d = 100.
+    many_iterations: Run,
+}
+
+impl Runs {
+    fn simulate(bearing: &Bearing, progress: Progress<'_>) -> Result<Self, StudyError> {
+        let mut scenarios = Vec::new();
+        for law in LAWS {
+            for position in POSITIONS {
+                for voltage in VOLTAGES {
+                    scenarios.push(Scenario::new(position, voltage).law(law));
+                }
+            }
+        }
+        for position in POSITIONS {
+            for voltage in VOLTAGES {
+                scenarios.push(Scenario::new(position, voltage).feedback(Feedback::State));
+            }
+        }
+        scenarios.extend(BIAS_FLUXES.map(|bias| Scenario::new(0.01, -150.0).bias_flux(bias)));
+        scenarios.push(Scenario::new(0.01, -150.0).max_iterations(100));
+
+        let done = AtomicUsize::new(0);
+        let mut runs = scenarios
+            .par_iter()
+            .map(|scenario| {
+                let run = bearing.simulate(scenario, SIMULATION_TIME)?;
+                let count = done.fetch_add(1, Ordering::Relaxed) + 1;
+                progress(0.9 * count as f64 / scenarios.len() as f64, "bearing: simulating");
+                Ok(run)
+            })
+            .collect::<Result<Vec<Run>, StudyError>>()?;
+        let many_iterations = runs.split_off(39).remove(0);
+        let biased = runs.split_off(36);
+        let state_feedback = runs.split_off(27);
+        Ok(Self { grid: runs, state_feedback, biased, many_iterations })
+    }
+
+    /// Run of the grid by indices into [`LAWS`], [`POSITIONS`] and [`VOLTAGES`].
+    fn of(&self, law: usize, position: usize, voltage: usize) -> &Run {
+        &self.grid[9 * law + 3 * position + voltage]
+    }
+
+    /// State feedback by indices into [`POSITIONS`] and [`VOLTAGES`], law (8a).
+    fn with_state(&self, position: usize, voltage: usize) -> &Run {
+        &self.state_feedback[3 * position + voltage]
+    }
+}

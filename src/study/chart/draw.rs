@@ -1,0 +1,308 @@
+//! A figure as SVG.
+
+use std::error::Error;
+use std::ops::Range;
+use std::sync::Once;
+
+use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
+use plotters::prelude::*;
+
+use super::{FONT, Figure, Panel, Series, Stroke};
+use crate::study::StudyError;
+
+/// Drawing units per px: plotters rounds coordinates to whole units, which shows in curves when a unit is a pixel.
+const FINENESS: u32 = 8;
+/// Size of a panel in px.
+const PANEL: (u32, u32) = (460, 300);
+const TITLE_HEIGHT: u32 = 44;
+const TEXT: RGBColor = RGBColor(40, 40, 40);
+
+/// Okabe and Ito's palette, told apart by colour-blind readers; without its yellow, which is faint on white.
+const PALETTE: [RGBColor; 7] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(86, 180, 233),
+    RGBColor(230, 159, 0),
+    RGBColor(60, 60, 60),
+];
+
+/// Most points a line keeps; more cannot be seen in a panel.
+const RESOLUTION: usize = 2 * PANEL.0 as usize;
+
+/// Pixels in drawing units.
+const fn px(pixels: u32) -> u32 {
+    pixels * FINENESS
+}
+
+/// Font of a height in px.
+fn font(pixels: u32) -> TextStyle<'static> {
+    TextStyle::from((FONT, px(pixels)).into_font()).color(&TEXT)
+}
+
+type Drawing<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
+
+/// The figure as an SVG document.
+pub fn svg(figure: &Figure) -> Result<String, StudyError> {
+    register_font();
+    let columns = figure.columns.max(1);
+    let rows = figure.panels.len().div_ceil(columns);
+    let (width, height) = (PANEL.0 * columns as u32, PANEL.1 * rows as u32 + TITLE_HEIGHT);
+    let (wide, high) = (width * FINENESS, height * FINENESS);
+    let mut document = String::new();
+    draw(figure, columns, rows, SVGBackend::with_string(&mut document, (wide, high)))
+        .map_err(|error| StudyError::Draw { figure: figure.title.clone(), reason: error.to_string() })?;
+    // The view box keeps the drawing units, the size is in px.
+    let drawn = format!("width=\"{wide}\" height=\"{high}\"");
+    Ok(document.replacen(&drawn, &format!("width=\"{width}\" height=\"{height}\""), 1))
+}
+
+/// Text metrics need a font; the one drawn with comes along, so nothing has to be installed.
+fn register_font() {
+    static REGISTER: Once = Once::new();
+    REGISTER.call_once(|| {
+        // Fails only for bytes that are no font; then drawing reports it.
+        let _ = plotters::style::register_font(FONT, FontStyle::Normal, dejavu::sans::regular());
+        let _ = plotters::style::register_font(FONT, FontStyle::Bold, dejavu::sans::bold());
+    });
+}
+
+fn draw(figure: &Figure, columns: usize, rows: usize, backend: SVGBackend<'_>) -> Result<(), Box<dyn Error>> {
+    let root = backend.into_drawing_area();
+    root.fill(&WHITE)?;
+    let title = TextStyle::from((FONT, px(17), FontStyle::Bold).into_font()).color(&TEXT);
+    let (head, body) = root.split_vertically(px(TITLE_HEIGHT));
+    head.draw(&Text::new(figure.title.as_str(), (px(16) as i32, px(14) as i32), title))?;
+    for (area, panel) in body.split_evenly((rows, columns)).iter().zip(&figure.panels) {
+        draw_panel(panel, area)?;
+    }
+    root.present()?;
+    Ok(())
+}
+
+fn draw_panel(panel: &Panel, area: &Drawing<'_>) -> Result<(), Box<dyn Error>> {
+    let shown = visible(panel);
+    let x_range = panel.x_range.unwrap_or_else(|| extent(shown.iter().flatten().map(|point| point.0)));
+    let y_range = extent(shown.iter().flatten().map(|point| point.1));
+    let x_axis = x_range.0..x_range.1;
+    if panel.logarithmic {
+        // At least one decade, whole decades at both ends.
+        let (low, high) = (10f64.powf(y_range.0.log10().floor()), 10f64.powf(y_range.1.log10().ceil()));
+        let high = if high > low { high } else { 10.0 * low };
+        draw_axes(panel, &shown, area, x_axis, (low..high).log_scale(), &|y| format!("{y:.0e}"))
+    } else {
+        let margin = match 0.06 * (y_range.1 - y_range.0) {
+            0.0 => (0.06 * y_range.0.abs()).max(1e-12),
+            margin => margin,
+        };
+        let decimals = decimals(y_range.1 - y_range.0 + 2.0 * margin);
+        draw_axes(panel, &shown, area, x_axis, y_range.0 - margin..y_range.1 + margin, &|y| {
+            tick(*y, decimals)
+        })
+    }
+}
+
+fn draw_axes<Y>(
+    panel: &Panel,
+    shown: &[Vec<(f64, f64)>],
+    area: &Drawing<'_>,
+    x_axis: Range<f64>,
+    y_axis: Y,
+    y_tick: &dyn Fn(&f64) -> String,
+) -> Result<(), Box<dyn Error>>
+where
+    Y: AsRangedCoord<Value = f64>,
+    Y::CoordDescType: ValueFormatter<f64>,
+{
+    let x_decimals = decimals(x_axis.end - x_axis.start);
+    let legend_position = emptiest_corner(shown, &x_axis, panel.logarithmic);
+    let mut chart = ChartBuilder::on(area)
+        .margin(px(10))
+        .margin_right(px(18))
+        .caption(&panel.title, font(14))
+        .set_label_area_size(LabelAreaPosition::Left, px(66))
+        .set_label_area_size(LabelAreaPosition::Bottom, px(42))
+        .build_cartesian_2d(x_axis, y_axis)?;
+    chart
+        .configure_mesh()
+        .x_desc(panel.x_label.as_str())
+        .y_desc(panel.y_label.as_str())
+        .axis_desc_style(font(13))
+        .label_style(font(12))
+        .x_labels(6)
+        .y_labels(6)
+        .x_label_formatter(&|x| tick(*x, x_decimals))
+        .y_label_formatter(y_tick)
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(RGBColor(225, 225, 225).stroke_width(px(1)))
+        .axis_style(RGBColor(120, 120, 120).stroke_width(px(1)))
+        .set_all_tick_mark_size(px(4))
+        .draw()?;
+    for (series, points) in panel.series.iter().zip(shown) {
+        draw_series(&mut chart, series, points)?;
+    }
+    if panel.series.iter().any(|series| !series.label.is_empty()) {
+        chart
+            .configure_series_labels()
+            .position(legend_position)
+            .background_style(WHITE.mix(0.85))
+            .border_style(RGBColor(200, 200, 200).stroke_width(px(1)))
+            .label_font(font(12))
+            .legend_area_size(px(28))
+            .margin(px(5))
+            .draw()?;
+    }
+    Ok(())
+}
+
+fn draw_series<'a, X, Y>(
+    chart: &mut ChartContext<'a, SVGBackend<'a>, Cartesian2d<X, Y>>,
+    series: &Series,
+    points: &[(f64, f64)],
+) -> Result<(), Box<dyn Error>>
+where
+    X: plotters::coord::ranged1d::Ranged<ValueType = f64>,
+    Y: plotters::coord::ranged1d::Ranged<ValueType = f64>,
+{
+    let colour = PALETTE[series.colour % PALETTE.len()];
+    let style = colour.stroke_width(px(2) - px(1) / 2);
+    let line = points.iter().copied();
+    let drawn = match series.stroke {
+        Stroke::Solid | Stroke::Held => chart.draw_series(LineSeries::new(line, style))?,
+        Stroke::Dashed => chart.draw_series(DashedLineSeries::new(line, px(7), px(5), style))?,
+        Stroke::Dots => {
+            let radius = px(3) / 2;
+            chart.draw_series(line.map(|point| Circle::new(point, radius, colour.filled())))?
+        }
+    };
+    if !series.label.is_empty() {
+        let length = match series.stroke {
+            Stroke::Solid | Stroke::Held => px(20),
+            Stroke::Dashed => px(8),
+            Stroke::Dots => px(2),
+        };
+        drawn.label(&series.label).legend(move |(x, y)| {
+            let start = x + px(3) as i32;
+            PathElement::new(vec![(start, y), (start + length as i32, y)], style)
+        });
+    }
+    Ok(())
+}
+
+/// The corner of the panel whose quarter holds the fewest points.
+fn emptiest_corner(shown: &[Vec<(f64, f64)>], x_axis: &Range<f64>, logarithmic: bool) -> SeriesLabelPosition {
+    let height = |y: f64| if logarithmic { y.log10() } else { y };
+    let (low, high) = extent(shown.iter().flatten().map(|point| height(point.1)));
+    let share = |point: &(f64, f64)| {
+        let x = (point.0 - x_axis.start) / (x_axis.end - x_axis.start);
+        (x, (height(point.1) - low) / (high - low).max(f64::MIN_POSITIVE))
+    };
+    let occupation = |right: bool, upper: bool| {
+        let is_inside = |(x, y): (f64, f64)| {
+            (if right { x > 0.55 } else { x < 0.45 }) && (if upper { y > 0.6 } else { y < 0.4 })
+        };
+        shown.iter().flatten().filter(|point| is_inside(share(point))).count()
+    };
+    let corners = [
+        (SeriesLabelPosition::UpperRight, occupation(true, true)),
+        (SeriesLabelPosition::LowerRight, occupation(true, false)),
+        (SeriesLabelPosition::UpperLeft, occupation(false, true)),
+        (SeriesLabelPosition::LowerLeft, occupation(false, false)),
+    ];
+    let fewest = corners.iter().map(|corner| corner.1).min();
+    let emptiest = corners.into_iter().find(|corner| Some(corner.1) == fewest);
+    emptiest.map_or(SeriesLabelPosition::UpperRight, |corner| corner.0)
+}
+
+/// The points of each series inside the x range that can be drawn, thinned to what a panel resolves.
+fn visible(panel: &Panel) -> Vec<Vec<(f64, f64)>> {
+    let (start, end) = panel.x_range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+    let is_drawable =
+        |&(x, y): &(f64, f64)| x >= start && x <= end && y.is_finite() && (!panel.logarithmic || y > 0.0);
+    panel
+        .series
+        .iter()
+        .map(|series| {
+            let points = thin(series.points.iter().copied().filter(is_drawable).collect());
+            if series.stroke == Stroke::Held { staircase(&points) } else { points }
+        })
+        .collect()
+}
+
+/// Adds a corner before each new value.
+fn staircase(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let corners = points.windows(2).flat_map(|pair| [pair[0], (pair[1].0, pair[0].1)]);
+    corners.chain(points.last().copied()).collect()
+}
+
+/// Keeps the smallest and largest point of each of a few hundred bins, in their order.
+fn thin(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    if points.len() <= RESOLUTION {
+        return points;
+    }
+    let bin = points.len().div_ceil(RESOLUTION / 2);
+    points
+        .chunks(bin)
+        .flat_map(|chunk| {
+            let by_value = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
+            let low = chunk.iter().min_by(by_value).copied();
+            let high = chunk.iter().max_by(by_value).copied();
+            let mut pair = [low, high];
+            pair.sort_by(|a, b| a.map(|point| point.0).partial_cmp(&b.map(|point| point.0)).expect("finite"));
+            pair.into_iter().flatten()
+        })
+        .collect()
+}
+
+/// Smallest and largest value, 0 to 1 if there is none.
+fn extent(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values
+        .fold(None, |range: Option<(f64, f64)>, value| {
+            Some(range.map_or((value, value), |(low, high)| (low.min(value), high.max(value))))
+        })
+        .unwrap_or((0.0, 1.0))
+}
+
+/// Decimals that tell the ticks of an axis of this length apart.
+fn decimals(length: f64) -> usize {
+    (1.0 - length.log10().floor()).clamp(0.0, 12.0) as usize
+}
+
+/// Tick label; very small and very large numbers in powers of ten.
+fn tick(value: f64, decimals: usize) -> String {
+    if decimals > 4 && value != 0.0 {
+        return format!("{value:.1e}");
+    }
+    let text = format!("{value:.decimals$}");
+    // No "-0.00".
+    if text.trim_start_matches('-').chars().all(|c| c == '0' || c == '.') {
+        text.replace('-', "")
+    } else {
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thinning_keeps_the_extremes() {
+        let mut points: Vec<(f64, f64)> = (0..100_000).map(|k| (f64::from(k), 0.0)).collect();
+        points[12_345].1 = 7.0;
+        points[54_321].1 = -3.0;
+        let thinned = thin(points);
+        assert!(thinned.len() <= RESOLUTION + 2);
+        assert!(thinned.contains(&(12_345.0, 7.0)) && thinned.contains(&(54_321.0, -3.0)));
+        assert!(thinned.windows(2).all(|pair| pair[0].0 <= pair[1].0));
+    }
+
+    #[test]
+    fn ticks_are_readable() {
+        assert_eq!(tick(-0.0001, 2), "0.00");
+        assert_eq!(tick(2.5, decimals(10.0)), "2");
+        assert_eq!(tick(0.25, decimals(1.0)), "0.2");
+        assert_eq!(tick(3e-9, decimals(1e-8)), "3.0e-9");
+    }
+}

@@ -1,0 +1,94 @@
+//! Line charts in panels, drawn once as SVG and rendered from that to PNG, with a font that comes along.
+
+mod draw;
+mod raster;
+
+pub use draw::svg;
+pub use raster::png;
+
+/// Family name under which the embedded font is known to both renderers.
+const FONT: &str = "DejaVu Sans";
+
+/// A page of panels.
+#[derive(Clone, Debug)]
+pub struct Figure {
+    pub title: String,
+    /// What the figure shows, for the report.
+    pub caption: String,
+    /// Panels per row.
+    pub columns: usize,
+    pub panels: Vec<Panel>,
+}
+
+/// One coordinate system.
+#[derive(Clone, Debug)]
+pub struct Panel {
+    pub title: String,
+    /// Axis names with their units.
+    pub x_label: String,
+    pub y_label: String,
+    /// Shown part of the x axis; all data if absent.
+    pub x_range: Option<(f64, f64)>,
+    /// Whether the y axis is logarithmic; values that are not positive are left out then.
+    pub logarithmic: bool,
+    pub series: Vec<Series>,
+}
+
+impl Panel {
+    pub fn new(title: impl Into<String>, x_label: impl Into<String>, y_label: impl Into<String>) -> Self {
+        Self {
+            title: title.into(),
+            x_label: x_label.into(),
+            y_label: y_label.into(),
+            x_range: None,
+            logarithmic: false,
+            series: Vec::new(),
+        }
+    }
+
+    pub fn between(mut self, start: f64, end: f64) -> Self {
+        self.x_range = Some((start, end));
+        self
+    }
+
+    pub fn logarithmic(mut self) -> Self {
+        self.logarithmic = true;
+        self
+    }
+
+    pub fn with(mut self, series: Series) -> Self {
+        self.series.push(series);
+        self
+    }
+}
+
+/// How a line is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stroke {
+    Solid,
+    Dashed,
+    /// Each value holds until the next, as the output of a sampled controller does.
+    Held,
+    /// Separate dots, for values that scatter.
+    Dots,
+}
+
+/// A line with a legend entry; the colour is the `colour`th of the palette.
+#[derive(Clone, Debug)]
+pub struct Series {
+    pub label: String,
+    pub colour: usize,
+    pub stroke: Stroke,
+    pub points: Vec<(f64, f64)>,
+}
+
+impl Series {
+    pub fn new(
+        label: impl Into<String>,
+        colour: usize,
+        stroke: Stroke,
+        points: impl IntoIterator<Item = (f64, f64)>,
+    ) -> Self {
+        Self { label: label.into(), colour, stroke, points: points.into_iter().collect() }
+    }
+}

@@ -1,0 +1,20 @@
+//! Why a study failed.
+
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use crate::host::HostError;
+
+/// Failure of an experiment or of writing its results.
+#[derive(Debug, Error)]
+pub enum StudyError {
+    #[error(transparent)]
+    Host(#[from] HostError),
+    #[error("cannot write {}", path.display())]
+    Write { path: PathBuf, source: std::io::Error },
+    #[error("cannot draw {figure}: {reason}")]
+    Draw { figure: String, reason: String },
+    #[error("cannot turn the claims into JSON")]
+    Json(#[from] serde_json::Error),
+}

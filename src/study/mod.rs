@@ -1,0 +1,62 @@
+//! Experiments: what the papers show, reproduced through the packaged units, with claims, tables and pictures.
+//!
+//! An experiment opens packages with the [`crate::host`], runs them, and hands back figures and claims; everything
+//! that is written to disk goes through [`output`].
+
+pub mod bearing;
+pub mod chart;
+pub mod claim;
+mod error;
+pub mod output;
+pub mod report;
+
+use std::path::Path;
+
+pub use error::StudyError;
+
+use chart::Figure;
+use claim::Claim;
+
+/// What an experiment yields.
+pub struct Findings {
+    /// Short name, as on the command line.
+    pub name: &'static str,
+    pub title: &'static str,
+    /// The source, and what about it is printed, reconstructed or assumed.
+    pub provenance: &'static [&'static str],
+    pub figures: Vec<FigureWithData>,
+    pub claims: Vec<Claim>,
+}
+
+/// A figure and the numbers behind it.
+pub struct FigureWithData {
+    /// File name without extension.
+    pub name: String,
+    pub figure: Figure,
+    pub table: Table,
+}
+
+/// Columns of equal length with a header each, `name [unit]`.
+#[derive(Default)]
+pub struct Table {
+    pub headers: Vec<String>,
+    pub columns: Vec<Vec<f64>>,
+}
+
+/// Called with the share of work done and what is being done.
+pub type Progress<'a> = &'a (dyn Fn(f64, &str) + Sync);
+
+/// A reproduction that can be asked for by name.
+pub struct Experiment {
+    pub name: &'static str,
+    pub summary: &'static str,
+    /// Runs on the packages in a directory made by [`crate::package::build`].
+    pub run: fn(packages: &Path, progress: Progress<'_>) -> Result<Findings, StudyError>,
+}
+
+/// All experiments, in the order they run.
+pub static EXPERIMENTS: &[Experiment] = &[Experiment {
+    name: "bearing",
+    summary: "Newton observer and three laws for a magnetic bearing: figures 2 to 6 and the claims",
+    run: bearing::run,
+}];

@@ -1,0 +1,60 @@
+//! Files of a reproduction: per figure CSV, SVG and PNG; all claims; the report.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::claim::Claim;
+use super::{Findings, StudyError, Table, chart, report};
+
+/// The claims of one experiment in `claims.json`.
+#[derive(Serialize)]
+struct ExperimentClaims<'a> {
+    experiment: &'a str,
+    claims: &'a [Claim],
+}
+
+/// Writes everything below `directory` and returns the report's path.
+pub fn write(directory: &Path, findings: &[Findings]) -> Result<PathBuf, StudyError> {
+    fs::create_dir_all(directory)
+        .map_err(|source| StudyError::Write { path: directory.to_owned(), source })?;
+    let mut pictures = Vec::new();
+    for experiment in findings {
+        for figure in &experiment.figures {
+            let svg = chart::svg(&figure.figure)?;
+            let file = |extension: &str| directory.join(format!("{}.{extension}", figure.name));
+            write_file(&file("svg"), svg.as_bytes())?;
+            write_file(&file("png"), &chart::png(&figure.figure, &svg)?)?;
+            write_file(&file("csv"), &csv(&figure.table))?;
+            pictures.push(svg);
+        }
+    }
+    let claims: Vec<ExperimentClaims> = findings
+        .iter()
+        .map(|experiment| ExperimentClaims { experiment: experiment.name, claims: &experiment.claims })
+        .collect();
+    write_file(&directory.join("claims.json"), serde_json::to_string_pretty(&claims)?.as_bytes())?;
+    let path = directory.join("report.html");
+    write_file(&path, report::html(findings, &pictures).as_bytes())?;
+    Ok(path)
+}
+
+/// Shortest decimal numbers that read back to the same bits.
+fn csv(table: &Table) -> Vec<u8> {
+    let mut text = table.headers.join(",");
+    let rows = table.columns.first().map_or(0, Vec::len);
+    for row in 0..rows {
+        text.push('\n');
+        for (place, column) in table.columns.iter().enumerate() {
+            let separator = if place == 0 { "" } else { "," };
+            text.push_str(&format!("{separator}{:e}", column[row]));
+        }
+    }
+    text.push('\n');
+    text.into_bytes()
+}
+
+fn write_file(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
+    fs::write(path, bytes).map_err(|source| StudyError::Write { path: path.to_owned(), source })
+}
