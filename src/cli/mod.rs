@@ -3,6 +3,7 @@
 mod build;
 mod describe;
 mod reproduce;
+mod trace;
 
 use std::error::Error;
 use std::fmt;
@@ -26,6 +27,7 @@ enum Command {
     Build(build::Build),
     Reproduce(reproduce::Reproduce),
     Describe(describe::Describe),
+    Trace(trace::Trace),
 }
 
 impl CommandLine {
@@ -39,6 +41,7 @@ impl CommandLine {
             Some(Command::Build(command)) => Ok(command.run()?),
             Some(Command::Reproduce(command)) => command.run(),
             Some(Command::Describe(command)) => Ok(command.run()?),
+            Some(Command::Trace(command)) => command.run(),
         }
     }
 }

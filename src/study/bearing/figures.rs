@@ -8,6 +8,8 @@ use crate::study::{FigureWithData, Table};
 const STATES: [(&str, &str, f64); 3] =
     [("position x1", "mm", 1e3), ("velocity x2", "mm/s", 1e3), ("flux x3", "mWb", 1e3)];
 const TIME: &str = "time [s]";
+/// Errors below this, zero included, stand here on the logarithmic axis, in the unit shown.
+const FLOOR: f64 = 1e-16;
 
 pub fn all(runs: &Runs) -> Vec<FigureWithData> {
     vec![figure_2(runs), figure_3(runs), figure_4(runs), figure_5(runs), figure_6(runs)]
@@ -34,7 +36,7 @@ fn error_panel(letter: &str, runs: &[Labelled<'_>], state: usize, end: f64) -> P
     let panel =
         Panel::new(format!("{letter} error of the {name} estimate"), TIME, format!("|error| [{unit}]"));
     runs.iter().enumerate().fold(panel.between(0.0, end).logarithmic(), |panel, (colour, (label, run))| {
-        let points = run.time.iter().zip(run.error(state)).map(|(t, e)| (*t, factor * e.abs()));
+        let points = run.time.iter().zip(run.error(state)).map(|(t, e)| (*t, (factor * e.abs()).max(FLOOR)));
         panel.with(Series::new(label, colour, Stroke::Dots, points))
     })
 }

@@ -180,11 +180,12 @@ where
         let length = match series.stroke {
             Stroke::Solid | Stroke::Held => px(20),
             Stroke::Dashed => px(8),
-            Stroke::Dots => px(2),
+            Stroke::Dots => px(5),
         };
+        let key = if series.stroke == Stroke::Dots { colour.stroke_width(px(5)) } else { style };
         drawn.label(&series.label).legend(move |(x, y)| {
             let start = x + px(3) as i32;
-            PathElement::new(vec![(start, y), (start + length as i32, y)], style)
+            PathElement::new(vec![(start, y), (start + length as i32, y)], key)
         });
     }
     Ok(())
