@@ -26,6 +26,16 @@ pub struct Findings {
     pub provenance: &'static [&'static str],
     pub figures: Vec<FigureWithData>,
     pub claims: Vec<Claim>,
+    pub summaries: Vec<Summary>,
+    /// Paragraphs that tell a user what follows, written from the numbers.
+    pub advice: Vec<String>,
+}
+
+/// A table for people: cells are formatted with their units.
+pub struct Summary {
+    pub title: String,
+    pub headers: Vec<String>,
+    pub rows: Vec<Vec<String>>,
 }
 
 /// A figure and the numbers behind it.

@@ -2,14 +2,14 @@
 
 use std::fmt::Write;
 
-use super::Findings;
 use super::claim::{Claim, Verdict};
+use super::{Findings, Summary};
 
 const STYLE: &str = "body{font:15px/1.5 system-ui,sans-serif;color:#222;max-width:1440px;margin:2em auto;padding:0 1.5em}\
 h1,h2{line-height:1.2}table{border-collapse:collapse;width:100%;margin:1em 0}\
 td,th{border-bottom:1px solid #ddd;padding:.5em .7em;text-align:left;vertical-align:top}\
 th{background:#f5f5f5}.reproduced{color:#00735a}.not_reproduced{color:#b03a00}.cannot_be_judged{color:#666}\
-td.verdict{font-weight:600;white-space:nowrap}figure{margin:2em 0}figure svg{max-width:100%;height:auto}\
+p.advice{border-left:4px solid #0072b2;padding-left:1em}td.verdict{font-weight:600;white-space:nowrap}figure{margin:2em 0}figure svg{max-width:100%;height:auto}\
 figcaption,.small{color:#555;font-size:.92em}";
 
 /// The report's text; `pictures` are the SVG documents of all figures in order.
@@ -30,6 +30,10 @@ pub fn html(findings: &[Findings], pictures: &[String]) -> String {
         for paragraph in experiment.provenance {
             let _ = writeln!(page, "<p>{}</p>", escape(paragraph));
         }
+        for paragraph in &experiment.advice {
+            let _ = writeln!(page, "<p class=\"advice\">{}</p>", escape(paragraph));
+        }
+        experiment.summaries.iter().for_each(|summary| table(&mut page, summary));
         page.push_str(
             "<table><tr><th>Claim</th><th>Verdict</th><th>Measured</th><th>How it was judged</th></tr>\n",
         );
@@ -47,6 +51,18 @@ pub fn html(findings: &[Findings], pictures: &[String]) -> String {
     }
     page.push_str("</body></html>\n");
     page
+}
+
+fn table(page: &mut String, summary: &Summary) {
+    let cells = |tag: &str, cells: &[String]| -> String {
+        cells.iter().map(|cell| format!("<{tag}>{}</{tag}>", escape(cell))).collect()
+    };
+    let _ =
+        write!(page, "<h3>{}</h3><table><tr>{}</tr>", escape(&summary.title), cells("th", &summary.headers));
+    for row in &summary.rows {
+        let _ = write!(page, "<tr>{}</tr>", cells("td", row));
+    }
+    page.push_str("</table>\n");
 }
 
 fn row(page: &mut String, claim: &Claim) {

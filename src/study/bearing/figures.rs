@@ -33,8 +33,11 @@ fn state_panel(letter: &str, runs: &[Labelled<'_>], state: usize) -> Panel {
 /// One state's estimation error of several runs over the first `end` seconds.
 fn error_panel(letter: &str, runs: &[Labelled<'_>], state: usize, end: f64) -> Panel {
     let (name, unit, factor) = STATES[state];
-    let panel =
-        Panel::new(format!("{letter} error of the {name} estimate"), TIME, format!("|error| [{unit}]"));
+    let panel = Panel::new(
+        format!("{letter} error of the {name} estimate"),
+        TIME,
+        format!("|error| [{unit}], zero at {FLOOR:e}"),
+    );
     runs.iter().enumerate().fold(panel.between(0.0, end).logarithmic(), |panel, (colour, (label, run))| {
         let points = run.time.iter().zip(run.error(state)).map(|(t, e)| (*t, (factor * e.abs()).max(FLOOR)));
         panel.with(Series::new(label, colour, Stroke::Dots, points))

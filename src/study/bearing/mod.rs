@@ -45,6 +45,8 @@ pub fn run(packages: &Path, progress: Progress<'_>) -> Result<Findings, StudyErr
         provenance: PROVENANCE,
         figures: figures::all(&runs),
         claims: claims::all(&bearing, &runs)?,
+        summaries: Vec::new(),
+        advice: Vec::new(),
     })
 }
 

@@ -86,74 +86,94 @@ fn draw_panel(panel: &Panel, area: &Drawing<'_>) -> Result<(), Box<dyn Error>> {
     let x_range = panel.x_range.unwrap_or_else(|| extent(shown.iter().flatten().map(|point| point.0)));
     let y_range = extent(shown.iter().flatten().map(|point| point.1));
     let x_axis = x_range.0..x_range.1;
-    if panel.logarithmic {
-        // At least one decade, whole decades at both ends.
-        let (low, high) = (10f64.powf(y_range.0.log10().floor()), 10f64.powf(y_range.1.log10().ceil()));
-        let high = if high > low { high } else { 10.0 * low };
-        draw_axes(panel, &shown, area, x_axis, (low..high).log_scale(), &|y| format!("{y:.0e}"))
-    } else {
-        let margin = match 0.06 * (y_range.1 - y_range.0) {
-            0.0 => (0.06 * y_range.0.abs()).max(1e-12),
-            margin => margin,
-        };
-        let decimals = decimals(y_range.1 - y_range.0 + 2.0 * margin);
-        draw_axes(panel, &shown, area, x_axis, y_range.0 - margin..y_range.1 + margin, &|y| {
-            tick(*y, decimals)
-        })
+    let x_decimals = decimals(x_range.1 - x_range.0);
+    let margin = match 0.06 * (y_range.1 - y_range.0) {
+        0.0 => (0.06 * y_range.0.abs()).max(1e-12),
+        margin => margin,
+    };
+    let y_axis = y_range.0 - margin..y_range.1 + margin;
+    let y_decimals = decimals(y_axis.end - y_axis.start);
+    let x_tick = |x: &f64| tick(*x, x_decimals);
+    let y_tick = |y: &f64| tick(*y, y_decimals);
+    let power = |value: &f64| format!("{value:.0e}");
+    let canvas = Canvas { panel, shown: &shown, area };
+    match (panel.x_logarithmic, panel.logarithmic) {
+        (false, false) => canvas.draw(x_axis, y_axis, &x_tick, &y_tick),
+        (false, true) => canvas.draw(x_axis, decades(y_range).log_scale(), &x_tick, &power),
+        (true, false) => canvas.draw(decades(x_range).log_scale(), y_axis, &power, &y_tick),
+        (true, true) => {
+            canvas.draw(decades(x_range).log_scale(), decades(y_range).log_scale(), &power, &power)
+        }
     }
 }
 
-fn draw_axes<Y>(
-    panel: &Panel,
-    shown: &[Vec<(f64, f64)>],
-    area: &Drawing<'_>,
-    x_axis: Range<f64>,
-    y_axis: Y,
-    y_tick: &dyn Fn(&f64) -> String,
-) -> Result<(), Box<dyn Error>>
-where
-    Y: AsRangedCoord<Value = f64>,
-    Y::CoordDescType: ValueFormatter<f64>,
-{
-    let x_decimals = decimals(x_axis.end - x_axis.start);
-    let legend_position = emptiest_corner(shown, &x_axis, panel.logarithmic);
-    let mut chart = ChartBuilder::on(area)
-        .margin(px(10))
-        .margin_right(px(18))
-        .caption(&panel.title, font(14))
-        .set_label_area_size(LabelAreaPosition::Left, px(66))
-        .set_label_area_size(LabelAreaPosition::Bottom, px(42))
-        .build_cartesian_2d(x_axis, y_axis)?;
-    chart
-        .configure_mesh()
-        .x_desc(panel.x_label.as_str())
-        .y_desc(panel.y_label.as_str())
-        .axis_desc_style(font(13))
-        .label_style(font(12))
-        .x_labels(6)
-        .y_labels(6)
-        .x_label_formatter(&|x| tick(*x, x_decimals))
-        .y_label_formatter(y_tick)
-        .light_line_style(TRANSPARENT)
-        .bold_line_style(RGBColor(225, 225, 225).stroke_width(px(1)))
-        .axis_style(RGBColor(120, 120, 120).stroke_width(px(1)))
-        .set_all_tick_mark_size(px(4))
-        .draw()?;
-    for (series, points) in panel.series.iter().zip(shown) {
-        draw_series(&mut chart, series, points)?;
-    }
-    if panel.series.iter().any(|series| !series.label.is_empty()) {
+/// Whole decades around a range, at least one.
+fn decades((low, high): (f64, f64)) -> Range<f64> {
+    let (low, high) = (10f64.powf(low.log10().floor()), 10f64.powf(high.log10().ceil()));
+    low..if high > low { high } else { 10.0 * low }
+}
+
+/// A panel, the points of it that are shown, and where it is drawn.
+struct Canvas<'a, 'b> {
+    panel: &'a Panel,
+    shown: &'a [Vec<(f64, f64)>],
+    area: &'a Drawing<'b>,
+}
+
+impl Canvas<'_, '_> {
+    fn draw<X, Y>(
+        &self,
+        x_axis: X,
+        y_axis: Y,
+        x_tick: &dyn Fn(&f64) -> String,
+        y_tick: &dyn Fn(&f64) -> String,
+    ) -> Result<(), Box<dyn Error>>
+    where
+        X: AsRangedCoord<Value = f64>,
+        X::CoordDescType: ValueFormatter<f64>,
+        Y: AsRangedCoord<Value = f64>,
+        Y::CoordDescType: ValueFormatter<f64>,
+    {
+        let Self { panel, shown, area } = *self;
+        let legend_position = emptiest_corner(panel, shown);
+        let mut chart = ChartBuilder::on(area)
+            .margin(px(10))
+            .margin_right(px(18))
+            .caption(&panel.title, font(14))
+            .set_label_area_size(LabelAreaPosition::Left, px(66))
+            .set_label_area_size(LabelAreaPosition::Bottom, px(42))
+            .build_cartesian_2d(x_axis, y_axis)?;
         chart
-            .configure_series_labels()
-            .position(legend_position)
-            .background_style(WHITE.mix(0.85))
-            .border_style(RGBColor(200, 200, 200).stroke_width(px(1)))
-            .label_font(font(12))
-            .legend_area_size(px(28))
-            .margin(px(5))
+            .configure_mesh()
+            .x_desc(panel.x_label.as_str())
+            .y_desc(panel.y_label.as_str())
+            .axis_desc_style(font(13))
+            .label_style(font(12))
+            .x_labels(6)
+            .y_labels(6)
+            .x_label_formatter(x_tick)
+            .y_label_formatter(y_tick)
+            .light_line_style(TRANSPARENT)
+            .bold_line_style(RGBColor(225, 225, 225).stroke_width(px(1)))
+            .axis_style(RGBColor(120, 120, 120).stroke_width(px(1)))
+            .set_all_tick_mark_size(px(4))
             .draw()?;
+        for (series, points) in panel.series.iter().zip(shown) {
+            draw_series(&mut chart, series, points)?;
+        }
+        if panel.series.iter().any(|series| !series.label.is_empty()) {
+            chart
+                .configure_series_labels()
+                .position(legend_position)
+                .background_style(WHITE.mix(0.85))
+                .border_style(RGBColor(200, 200, 200).stroke_width(px(1)))
+                .label_font(font(12))
+                .legend_area_size(px(28))
+                .margin(px(5))
+                .draw()?;
+        }
+        Ok(())
     }
-    Ok(())
 }
 
 fn draw_series<'a, X, Y>(
@@ -192,12 +212,18 @@ where
 }
 
 /// The corner of the panel whose quarter holds the fewest points.
-fn emptiest_corner(shown: &[Vec<(f64, f64)>], x_axis: &Range<f64>, logarithmic: bool) -> SeriesLabelPosition {
-    let height = |y: f64| if logarithmic { y.log10() } else { y };
-    let (low, high) = extent(shown.iter().flatten().map(|point| height(point.1)));
+fn emptiest_corner(panel: &Panel, shown: &[Vec<(f64, f64)>]) -> SeriesLabelPosition {
+    let scaled = |value: f64, logarithmic: bool| if logarithmic { value.log10() } else { value };
+    let place =
+        |point: &(f64, f64)| (scaled(point.0, panel.x_logarithmic), scaled(point.1, panel.logarithmic));
+    let (left, right) = match panel.x_range {
+        Some((start, end)) => (scaled(start, panel.x_logarithmic), scaled(end, panel.x_logarithmic)),
+        None => extent(shown.iter().flatten().map(|point| place(point).0)),
+    };
+    let (low, high) = extent(shown.iter().flatten().map(|point| place(point).1));
     let share = |point: &(f64, f64)| {
-        let x = (point.0 - x_axis.start) / (x_axis.end - x_axis.start);
-        (x, (height(point.1) - low) / (high - low).max(f64::MIN_POSITIVE))
+        let (x, y) = place(point);
+        ((x - left) / (right - left).max(f64::MIN_POSITIVE), (y - low) / (high - low).max(f64::MIN_POSITIVE))
     };
     let occupation = |right: bool, upper: bool| {
         let is_inside = |(x, y): (f64, f64)| {
@@ -219,8 +245,13 @@ fn emptiest_corner(shown: &[Vec<(f64, f64)>], x_axis: &Range<f64>, logarithmic: 
 /// The points of each series inside the x range that can be drawn, thinned to what a panel resolves.
 fn visible(panel: &Panel) -> Vec<Vec<(f64, f64)>> {
     let (start, end) = panel.x_range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
-    let is_drawable =
-        |&(x, y): &(f64, f64)| x >= start && x <= end && y.is_finite() && (!panel.logarithmic || y > 0.0);
+    let is_drawable = |&(x, y): &(f64, f64)| {
+        x >= start
+            && x <= end
+            && y.is_finite()
+            && (!panel.x_logarithmic || x > 0.0)
+            && (!panel.logarithmic || y > 0.0)
+    };
     panel
         .series
         .iter()

@@ -29,6 +29,8 @@ pub struct Panel {
     pub y_label: String,
     /// Shown part of the x axis; all data if absent.
     pub x_range: Option<(f64, f64)>,
+    /// Whether the x axis is logarithmic; values that are not positive are left out then.
+    pub x_logarithmic: bool,
     /// Whether the y axis is logarithmic; values that are not positive are left out then.
     pub logarithmic: bool,
     pub series: Vec<Series>,
@@ -41,6 +43,7 @@ impl Panel {
             x_label: x_label.into(),
             y_label: y_label.into(),
             x_range: None,
+            x_logarithmic: false,
             logarithmic: false,
             series: Vec::new(),
         }
@@ -48,6 +51,11 @@ impl Panel {
 
     pub fn between(mut self, start: f64, end: f64) -> Self {
         self.x_range = Some((start, end));
+        self
+    }
+
+    pub fn x_logarithmic(mut self) -> Self {
+        self.x_logarithmic = true;
         self
     }
 
