@@ -93,45 +93,33 @@ fn efficiency(position_noise: f64, flux_noise: f64, seeds: u64, samples: usize) 
     (error.value(), bound.value())
 }
 
+/// rms flux error over 100 runs of 10 s, the first 0.5 s left out, within 1.1 times its bound.
+fn assert_efficient(position_noise: f64, flux_noise: f64) {
+    let (error, bound) = efficiency(position_noise, flux_noise, 100, 10_000);
+    let ratio = error / bound;
+    println!("{position_noise:e} m {flux_noise:e} Wb: {error:.3e} bound {bound:.3e} ratio {ratio:.3}");
+    assert!(ratio <= 1.1, "{position_noise} m, {flux_noise} Wb: {ratio}");
+}
+
 #[test]
-fn reaches_the_bound_with_process_noise() {
+fn reaches_the_bound_with_small_process_noise() {
     for position_noise in [1e-7, 1e-6] {
-        for flux_noise in [1e-6, 1e-5] {
-            let (error, bound) = efficiency(position_noise, flux_noise, 10, 10_000);
-            assert!(error <= 1.1 * bound, "{position_noise} {flux_noise}: {error} {bound}");
-        }
+        assert_efficient(position_noise, 1e-6);
     }
 }
 
+#[test]
+fn reaches_the_bound_with_large_process_noise() {
+    for position_noise in [1e-7, 1e-6] {
+        assert_efficient(position_noise, 1e-5);
+    }
+}
+
+/// The errors of a run have one cause, so that 100 runs know their size to 7 %.
 #[test]
 fn reaches_the_bound_without_process_noise() {
-    // The errors of a run have one cause, so that 50 runs know their size to 7 to 10 %.
-    for position_noise in [1e-9, 1e-6] {
-        let (error, bound) = efficiency(position_noise, 0.0, 50, 3000);
-        assert!(error <= 1.1 * bound, "{position_noise}: {error} {bound}");
-    }
-}
-
-/// The figures of the issue; run with `--release -- --ignored --nocapture`.
-#[test]
-#[ignore = "100 seeds of 10 s take a minute without optimisation"]
-fn hundred_seeds() {
-    for (position_noise, flux_noise) in [
-        (1e-9, 0.0),
-        (1e-8, 0.0),
-        (1e-7, 0.0),
-        (1e-6, 0.0),
-        (1e-7, 1e-6),
-        (1e-7, 1e-5),
-        (1e-6, 1e-6),
-        (1e-6, 1e-5),
-    ] {
-        let (error, bound) = efficiency(position_noise, flux_noise, 100, 10_000);
-        println!(
-            "{position_noise:e} m {flux_noise:e} Wb: {error:.3e} bound {bound:.3e} ratio {:.3}",
-            error / bound
-        );
-        assert!(error <= 1.1 * bound);
+    for position_noise in [1e-9, 1e-8, 1e-7, 1e-6] {
+        assert_efficient(position_noise, 0.0);
     }
 }
 

@@ -104,4 +104,64 @@ proptest! {
         let estimate = shipped(&settings, y, u, state(guess));
         prop_assert!((vector(estimate) - vector(forward)).amax() < 1e-9, "{estimate:?} {forward:?}");
     }
+
+    #[test]
+    fn starts_at_the_truth_and_stays_there((x, u, _) in problem(), epsilon in 0.0..1.0f64) {
+        let bearing = MagneticBearing { epsilon };
+        let map = Map::Exact;
+        let settings = NewtonSettings { bearing, map, sample_time: T, max_iterations: 10, step_size: 1.0, line_search: false };
+        let first = bearing.advance(map, state(x), u[0], T);
+        let second = bearing.advance(map, first, u[1], T);
+        let mut observer = NewtonObserver::new(state(x));
+        observer.update(&settings, x[0], 0.0);
+        observer.update(&settings, first.position, u[0]);
+        let estimate = observer.update(&settings, second.position, u[1]);
+        prop_assert!((vector(estimate.state) - vector(second)).amax() < 1e-10);
+        prop_assert!(estimate.converged && estimate.iterations <= 2);
+    }
+
+    #[test]
+    fn nothing_non_finite_leaves_the_observer(
+        samples in prop::collection::vec((any::<f64>(), any::<f64>()), 3..12), exact: bool, epsilon in 0.0..1.0f64,
+    ) {
+        let map = if exact { Map::Exact } else { Map::Printed };
+        let bearing = MagneticBearing { epsilon };
+        let settings = NewtonSettings { bearing, map, sample_time: T, max_iterations: 10, step_size: 1.0, line_search: false };
+        let mut observer = NewtonObserver::new(State { position: 0.0, velocity: 0.0, flux: 1e-9 });
+        for (position, voltage) in samples {
+            prop_assume!(position.is_finite() && voltage.is_finite());
+            let estimate = observer.update(&settings, position, voltage);
+            prop_assert!(estimate.state.is_finite() && estimate.residual.is_finite());
+        }
+    }
+}
+
+#[test]
+fn singular_window_keeps_the_estimate() {
+    // Zero flux, zero voltage, zero bias: the second difference does not depend on the flux at all.
+    for map in [Map::Exact, Map::Printed] {
+        let bearing = MagneticBearing { epsilon: 0.0 };
+        let settings = NewtonSettings {
+            bearing,
+            map,
+            sample_time: T,
+            max_iterations: 10,
+            step_size: 1.0,
+            line_search: false,
+        };
+        let mut observer = NewtonObserver::new(State::default());
+        for sample in 0..5 {
+            let estimate = observer.update(&settings, 0.0, 0.0);
+            assert_eq!(estimate.state, State::default(), "{map:?} sample {sample}");
+            assert!(!estimate.converged);
+        }
+        // It works again once there is something to see.
+        let mut truth = State { position: 0.0, velocity: 0.0, flux: 0.1 };
+        let mut estimate = observer.update(&settings, truth.position, 0.0);
+        for _ in 0..10 {
+            truth = settings.bearing.advance(map, truth, 5.0, T);
+            estimate = observer.update(&settings, truth.position, 5.0);
+        }
+        assert!(estimate.converged && (estimate.state.flux - truth.flux).abs() < 1e-9, "{estimate:?}");
+    }
 }

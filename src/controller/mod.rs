@@ -1,7 +1,9 @@
 //! Control laws, one family per file.
 
 pub mod bearing_feedback;
+mod bearing_law;
 pub mod flux_cascade;
 mod saturation;
 
+pub use bearing_law::BearingLaw;
 pub use saturation::saturate;

@@ -46,10 +46,18 @@ impl FactoredCovariance {
     /// P = U D U^T
     pub fn matrix(&self) -> Matrix3<f64> {
         let (p, q, r) = (self.position_velocity, self.position_flux, self.velocity_flux);
-        let [first, second, third] = self.diagonal;
+        let [_, second, third] = self.diagonal;
         let (p12, p13, p23) = (second * p + third * q * r, third * q, third * r);
-        let (p11, p22) = (first + second * p * p + third * q * q, second + third * r * r);
-        Matrix3::new(p11, p12, p13, p12, p22, p23, p13, p23, third)
+        let [p11, p22, p33] = self.variances();
+        Matrix3::new(p11, p12, p13, p12, p22, p23, p13, p23, p33)
+    }
+
+    /// P11, P22, P33 in m2, m2/s2, Wb2.
+    #[inline]
+    pub fn variances(&self) -> [f64; 3] {
+        let (p, q, r) = (self.position_velocity, self.position_flux, self.velocity_flux);
+        let [first, second, third] = self.diagonal;
+        [first + second * p * p + third * q * q, second + third * r * r, third]
     }
 
     /// P33 \[Wb2\]; U has ones on its diagonal, so it is D33.

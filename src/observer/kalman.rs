@@ -107,6 +107,15 @@ impl KalmanObserver {
         self.filter.covariance.matrix()
     }
 
+    /// Standard deviations of position, velocity and flux after the last sample, by the filter's own account.
+    #[inline]
+    pub fn deviation(&self) -> State {
+        // The factors are finite, their products may overflow.
+        let [position, velocity, flux] =
+            self.filter.covariance.variances().map(|variance| variance.sqrt().min(f64::MAX));
+        State { position, velocity, flux }
+    }
+
     /// Takes the sample y\[k\] = `position` \[m\] and the voltage \[V\] that acted since the sample before.
     ///
     /// The first sample corrects the initial state; there is no step before it. The estimate is the filter's own

@@ -1,10 +1,16 @@
-//! State estimators, one per file.
+//! State estimators, one per file, and what they share.
 
+mod bearing_observer;
 pub mod factored_covariance;
 pub mod kalman;
+mod least_squares_window;
 pub mod newton;
 pub mod reduced_newton;
+mod square_window;
+mod step_length;
 pub mod windowed_newton;
+
+pub use bearing_observer::{BearingObserver, BearingObserverSettings};
 
 use crate::plant::magnetic_bearing::State;
 
@@ -16,8 +22,8 @@ const CONVERGED: f64 = 1e-6;
 pub struct Estimate {
     /// State at the newest sample.
     pub state: State,
-    /// Largest component of Y - H(w) \[m\] after the last iteration; of the Kalman filter the size of the
-    /// innovation.
+    /// Largest component of Y - H(w) \[m\] after the last iteration, of the reduced-order observer the residual of
+    /// (7), of the Kalman filter the size of the innovation.
     pub residual: f64,
     /// Iterations made, at most d.
     pub iterations: u32,

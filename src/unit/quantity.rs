@@ -23,6 +23,9 @@ pub static VOLT_PER_METRE: UnitOfMeasure =
     UnitOfMeasure { name: "V/m", exponents: [1, 1, -3, -1], display: None };
 pub static VOLT_SECOND_PER_METRE: UnitOfMeasure =
     UnitOfMeasure { name: "V.s/m", exponents: [1, 1, -2, -1], display: None };
+pub static PER_SECOND: UnitOfMeasure = UnitOfMeasure { name: "1/s", exponents: [0, 0, -1, 0], display: None };
+pub static PER_SECOND_SQUARED: UnitOfMeasure =
+    UnitOfMeasure { name: "1/s2", exponents: [0, 0, -2, 0], display: None };
 pub static SECOND: UnitOfMeasure =
     UnitOfMeasure { name: "s", exponents: [0, 0, 1, 0], display: Some(("ms", 1e3)) };
 pub static ONE: UnitOfMeasure = UnitOfMeasure { name: "1", exponents: [0, 0, 0, 0], display: None };
@@ -66,6 +69,14 @@ pub static VELOCITY_GAIN: Quantity = Quantity {
     unit: &VOLT_SECOND_PER_METRE,
     nominal: 10.0,
 };
+pub static SQUARED_RATE: Quantity = Quantity {
+    name: "SquaredRate",
+    description: "Acceleration per displacement",
+    unit: &PER_SECOND_SQUARED,
+    nominal: 10.0,
+};
+pub static RATE: Quantity =
+    Quantity { name: "Rate", description: "Reciprocal of a time constant", unit: &PER_SECOND, nominal: 10.0 };
 pub static RATIO: Quantity =
     Quantity { name: "Ratio", description: "Dimensionless number", unit: &ONE, nominal: 1.0 };
 

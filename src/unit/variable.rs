@@ -138,16 +138,17 @@ impl Variable {
     }
 }
 
-/// Builds the static table `VARIABLES` of a unit and a constant per row that holds the row's index, i.e. value reference.
+/// Builds the static table `VARIABLES` of a unit and a constant per row that holds the row's index, i.e. value reference,
+/// for the module and its parent.
 macro_rules! variable_table {
     ($($index:ident = $variable:expr;)*) => {
         #[allow(non_camel_case_types, clippy::upper_case_acronyms, reason = "rows are named like constants")]
         #[allow(dead_code, reason = "not every row is read by name")]
         enum Row { $($index,)* Count }
         $(#[allow(dead_code, reason = "not every row is read by name")]
-        const $index: usize = Row::$index as usize;)*
-        const COUNT: usize = Row::Count as usize;
-        static VARIABLES: [Variable; COUNT] = [$($variable,)*];
+        pub(super) const $index: usize = Row::$index as usize;)*
+        pub(super) const COUNT: usize = Row::Count as usize;
+        pub(super) static VARIABLES: [Variable; COUNT] = [$($variable,)*];
     };
 }
 pub(super) use variable_table;

@@ -1,0 +1,80 @@
+//! What the values of parameters mean to the observers and the laws.
+
+use super::table::*;
+use crate::controller::BearingLaw;
+use crate::controller::bearing_feedback::{Gains, Law};
+use crate::controller::flux_cascade::FluxCascade;
+use crate::observer::BearingObserverSettings;
+use crate::observer::kalman::KalmanSettings;
+use crate::observer::newton::NewtonSettings;
+use crate::observer::reduced_newton::ReducedNewtonSettings;
+use crate::observer::windowed_newton::WindowedNewtonSettings;
+use crate::plant::magnetic_bearing::{MagneticBearing, Map, State};
+use crate::unit::magnetic_bearing::map;
+
+pub(super) fn observer_settings(values: &[f64; COUNT]) -> BearingObserverSettings {
+    let (bearing, sample_time) = (bearing(values), values[SAMPLE_TIME]);
+    let (max_iterations, step_size) = (values[MAX_ITERATIONS] as u32, values[STEP_SIZE]);
+    let map = map(values[OBSERVER_MAP]);
+    match values[OBSERVER] {
+        KALMAN => BearingObserverSettings::Kalman(KalmanSettings {
+            bearing,
+            map: Map::Exact,
+            sample_time,
+            position_noise: values[POSITION_NOISE],
+            flux_noise: values[FLUX_NOISE],
+        }),
+        kind @ (REDUCED_NEWTON | REDUCED_NEWTON_COMPENSATED) => {
+            BearingObserverSettings::ReducedNewton(ReducedNewtonSettings {
+                bearing,
+                map,
+                sample_time,
+                filter_time: values[FILTER_TIME],
+                lag_compensated: kind == REDUCED_NEWTON_COMPENSATED,
+                max_iterations,
+                step_size,
+            })
+        }
+        _ => {
+            let line_search = values[LINE_SEARCH] != 0.0;
+            let newton = NewtonSettings { bearing, map, sample_time, max_iterations, step_size, line_search };
+            if values[WINDOW] > SQUARE_WINDOW {
+                let window = values[WINDOW] as usize;
+                BearingObserverSettings::WindowedNewton(WindowedNewtonSettings { newton, window })
+            } else {
+                BearingObserverSettings::Newton(newton)
+            }
+        }
+    }
+}
+
+pub(super) fn initial_estimate(values: &[f64; COUNT]) -> State {
+    State {
+        position: values[OBSERVER_INITIAL_POSITION],
+        velocity: values[OBSERVER_INITIAL_VELOCITY],
+        flux: values[OBSERVER_INITIAL_FLUX],
+    }
+}
+
+pub(super) fn law(values: &[f64; COUNT]) -> BearingLaw {
+    let printed = match values[CONTROLLER_LAW] {
+        FLUX_CASCADE => return BearingLaw::FluxCascade(cascade(values), bearing(values)),
+        LAW_B => Law::B,
+        LAW_C => Law::C,
+        _ => Law::A,
+    };
+    BearingLaw::Printed(printed, Gains { position: values[K1], velocity: values[K2] })
+}
+
+fn cascade(values: &[f64; COUNT]) -> FluxCascade {
+    FluxCascade {
+        position_gain: values[CASCADE_POSITION_GAIN],
+        velocity_gain: values[CASCADE_VELOCITY_GAIN],
+        flux_gain: values[CASCADE_FLUX_GAIN],
+        regularisation: values[CASCADE_REGULARISATION],
+    }
+}
+
+fn bearing(values: &[f64; COUNT]) -> MagneticBearing {
+    MagneticBearing::with_bias(values[BIAS_FLUX], values[SATURATION_FLUX])
+}

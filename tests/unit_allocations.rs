@@ -1,0 +1,83 @@
+//! A step allocates nothing, whatever the observer, the law and the journal.
+
+mod native;
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::fmt::{self, Write};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use maglev_fmu::unit::{Journal, Silence, Topic, Unit};
+use native::{NativeLoop, OBSERVERS, get, set};
+
+/// The system's allocator, counting.
+struct Counting;
+
+static ALLOCATIONS: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: hands every call on to the system's allocator.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
+        // SAFETY: the caller's promise.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: the caller's promise.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Wants and formats every remark, and keeps only its length.
+#[derive(Default)]
+struct Listener(usize);
+
+impl Journal for Listener {
+    fn wants(&self, _: Topic) -> bool {
+        true
+    }
+
+    fn note(&mut self, _: Topic, message: fmt::Arguments<'_>) {
+        self.write_fmt(message).unwrap();
+    }
+}
+
+impl Write for Listener {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        self.0 += text.len();
+        Ok(())
+    }
+}
+
+/// The only test of this file: the counter belongs to the whole process.
+#[test]
+fn steps_allocate_nothing() {
+    let mut listener = Listener::default();
+    for (name, parameters) in OBSERVERS {
+        for law in 1..=4 {
+            let controller = [parameters, &[("controller.law", f64::from(law))]].concat();
+            let mut run =
+                NativeLoop::new(&[("sensor.noise", 1e-7), ("process.flux_noise", 1e-6)], &controller);
+            let before = ALLOCATIONS.load(Ordering::Relaxed);
+            for tick in 0..200 {
+                for input in ["position_measured", "voltage_measured"] {
+                    let value = get(&run.plant, input);
+                    let input = if input == "position_measured" { "position" } else { "voltage_applied" };
+                    set(&mut run.controller, input, value);
+                }
+                if tick == 100 {
+                    run.controller.adopt_parameters();
+                }
+                run.controller.advance(1e-3, &mut listener).unwrap();
+                let voltage = get(&run.controller, "voltage");
+                set(&mut run.plant, "voltage", voltage);
+                run.plant.advance(1e-3, &mut Silence).unwrap();
+            }
+            assert_eq!(ALLOCATIONS.load(Ordering::Relaxed), before, "{name}, law {law}");
+        }
+    }
+    assert!(listener.0 > 0, "the observers had something to say");
+}
