@@ -4,6 +4,7 @@
 //! that is written to disk goes through [`output`].
 
 pub mod bearing;
+pub mod bearing_observers;
 pub mod chart;
 pub mod claim;
 mod error;
@@ -65,8 +66,15 @@ pub struct Experiment {
 }
 
 /// All experiments, in the order they run.
-pub static EXPERIMENTS: &[Experiment] = &[Experiment {
-    name: "bearing",
-    summary: "Newton observer and three laws for a magnetic bearing: figures 2 to 6 and the claims",
-    run: bearing::run,
-}];
+pub static EXPERIMENTS: &[Experiment] = &[
+    Experiment {
+        name: "bearing",
+        summary: "Newton observer and three laws for a magnetic bearing: figures 2 to 6 and the claims",
+        run: bearing::run,
+    },
+    Experiment {
+        name: "bearing-observers",
+        summary: "all observers of the magnetic bearing under noise, next to the Cramer-Rao bound",
+        run: bearing_observers::run,
+    },
+];

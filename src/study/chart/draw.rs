@@ -17,8 +17,9 @@ const PANEL: (u32, u32) = (460, 300);
 const TITLE_HEIGHT: u32 = 44;
 const TEXT: RGBColor = RGBColor(40, 40, 40);
 
-/// Okabe and Ito's palette, told apart by colour-blind readers; without its yellow, which is faint on white.
-const PALETTE: [RGBColor; 7] = [
+/// Okabe and Ito's palette, told apart by colour-blind readers; without its yellow, which is faint on white, and with
+/// a violet and a grey more.
+const PALETTE: [RGBColor; 9] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
@@ -26,6 +27,8 @@ const PALETTE: [RGBColor; 7] = [
     RGBColor(86, 180, 233),
     RGBColor(230, 159, 0),
     RGBColor(60, 60, 60),
+    RGBColor(110, 64, 170),
+    RGBColor(150, 150, 150),
 ];
 
 /// Most points a line keeps; more cannot be seen in a panel.
@@ -91,7 +94,8 @@ fn draw_panel(panel: &Panel, area: &Drawing<'_>) -> Result<(), Box<dyn Error>> {
         0.0 => (0.06 * y_range.0.abs()).max(1e-12),
         margin => margin,
     };
-    let y_axis = y_range.0 - margin..y_range.1 + margin;
+    let (low, high) = panel.y_range.unwrap_or((y_range.0 - margin, y_range.1 + margin));
+    let y_axis = low..high;
     let y_decimals = decimals(y_axis.end - y_axis.start);
     let x_tick = |x: &f64| tick(*x, x_decimals);
     let y_tick = |y: &f64| tick(*y, y_decimals);
@@ -220,7 +224,10 @@ fn emptiest_corner(panel: &Panel, shown: &[Vec<(f64, f64)>]) -> SeriesLabelPosit
         Some((start, end)) => (scaled(start, panel.x_logarithmic), scaled(end, panel.x_logarithmic)),
         None => extent(shown.iter().flatten().map(|point| place(point).0)),
     };
-    let (low, high) = extent(shown.iter().flatten().map(|point| place(point).1));
+    let (low, high) = match panel.y_range {
+        Some((low, high)) => (scaled(low, panel.logarithmic), scaled(high, panel.logarithmic)),
+        None => extent(shown.iter().flatten().map(|point| place(point).1)),
+    };
     let share = |point: &(f64, f64)| {
         let (x, y) = place(point);
         ((x - left) / (right - left).max(f64::MIN_POSITIVE), (y - low) / (high - low).max(f64::MIN_POSITIVE))

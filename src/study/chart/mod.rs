@@ -29,6 +29,8 @@ pub struct Panel {
     pub y_label: String,
     /// Shown part of the x axis; all data if absent.
     pub x_range: Option<(f64, f64)>,
+    /// Ends of the y axis; all data with a margin if absent.
+    pub y_range: Option<(f64, f64)>,
     /// Whether the x axis is logarithmic; values that are not positive are left out then.
     pub x_logarithmic: bool,
     /// Whether the y axis is logarithmic; values that are not positive are left out then.
@@ -43,6 +45,7 @@ impl Panel {
             x_label: x_label.into(),
             y_label: y_label.into(),
             x_range: None,
+            y_range: None,
             x_logarithmic: false,
             logarithmic: false,
             series: Vec::new(),
@@ -51,6 +54,11 @@ impl Panel {
 
     pub fn between(mut self, start: f64, end: f64) -> Self {
         self.x_range = Some((start, end));
+        self
+    }
+
+    pub fn from_to(mut self, low: f64, high: f64) -> Self {
+        self.y_range = Some((low, high));
         self
     }
 

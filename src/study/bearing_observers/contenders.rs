@@ -1,0 +1,144 @@
+//! The observers that are compared, and one run of the loop with one of them.
+
+use std::path::Path;
+
+use super::{DURATION, INITIAL_FLUX, LOST_BEYOND, SCORED_FROM};
+use crate::host::{ExchangeOrder, Fmu, HostError, Logging, Trace, TwoUnitLoop, Value};
+use crate::study::StudyError;
+
+/// An observer with its parameters of the controller unit.
+pub struct Contender {
+    pub name: &'static str,
+    pub parameters: &'static [(&'static str, Value<'static>)],
+    /// Whether the filter is told the sensor's noise.
+    pub knows_noise: bool,
+}
+
+const fn contender(name: &'static str, parameters: &'static [(&'static str, Value<'static>)]) -> Contender {
+    Contender { name, parameters, knows_noise: false }
+}
+
+pub const CONTENDERS: [Contender; 8] = [
+    contender("Newton, printed model", &[]),
+    contender("Newton, exact model", &[("observer.map", Value::Text("exact"))]),
+    contender(
+        "Newton, 10 samples",
+        &[("observer.map", Value::Text("exact")), ("observer.window", Value::Integer(10))],
+    ),
+    contender(
+        "Newton, 30 samples",
+        &[("observer.map", Value::Text("exact")), ("observer.window", Value::Integer(30))],
+    ),
+    contender("reduced Newton, printed", &[("observer.kind", Value::Text("reduced_newton"))]),
+    contender(
+        "reduced Newton, compensated",
+        &[
+            ("observer.map", Value::Text("exact")),
+            ("observer.kind", Value::Text("reduced_newton_compensated")),
+        ],
+    ),
+    Contender {
+        name: "Kalman, no process noise",
+        parameters: &[("observer.kind", Value::Text("kalman")), ("observer.flux_noise", Value::Real(0.0))],
+        knows_noise: true,
+    },
+    Contender {
+        name: "Kalman, default noise",
+        parameters: &[("observer.kind", Value::Text("kalman"))],
+        knows_noise: false,
+    },
+];
+
+/// The two packages.
+pub struct Packages {
+    plant: Fmu,
+    controller: Fmu,
+}
+
+/// Conditions of a run.
+#[derive(Clone, Copy)]
+pub struct Conditions {
+    /// \[s\]
+    pub sample_time: f64,
+    /// Standard deviation of the sensor \[m\].
+    pub noise: f64,
+    pub seed: u32,
+    /// `state` or `estimate`.
+    pub feedback: &'static str,
+}
+
+impl Packages {
+    /// Opens the FMI 3.0 packages below `packages`.
+    pub fn open(packages: &Path) -> Result<Self, HostError> {
+        Ok(Self {
+            plant: Fmu::open(&packages.join("fmi3/MagneticBearingPlant.fmu"))?,
+            controller: Fmu::open(&packages.join("fmi3/MagneticBearingController.fmu"))?,
+        })
+    }
+
+    /// A run with the sensor in the loop; `parameters` go to the controller.
+    pub fn simulate(
+        &self,
+        conditions: Conditions,
+        parameters: &[(&str, Value<'_>)],
+    ) -> Result<Trace, StudyError> {
+        let Conditions { sample_time, noise, seed, feedback } = conditions;
+        let mut plant = self.plant.instantiate("plant", Logging::Off)?;
+        plant.set_by_name("initial.flux", INITIAL_FLUX)?;
+        plant.set_by_name("sensor.noise", noise)?;
+        plant.set_by_name("sensor.seed", seed as i32)?;
+        let mut controller = self.controller.instantiate("controller", Logging::Off)?;
+        controller.set_by_name("sample_time", sample_time)?;
+        controller.set_by_name("controller.initial_voltage", 0.0)?;
+        controller.set_by_name("controller.feedback", feedback)?;
+        for (name, value) in parameters {
+            controller.set_by_name(name, *value)?;
+        }
+        let mut control_loop = TwoUnitLoop::connect(
+            controller,
+            plant,
+            ExchangeOrder::ControllerFirst,
+            &[("position_measured", "position"), ("velocity", "state.velocity"), ("flux", "state.flux")],
+            &[("voltage", "voltage")],
+        )?;
+        control_loop.record(&[
+            ("plant", "position"),
+            ("plant", "velocity"),
+            ("plant", "flux"),
+            ("controller", "voltage"),
+            ("controller", "estimate.velocity"),
+            ("controller", "estimate.flux"),
+        ])?;
+        control_loop.initialise(0.0, Some(DURATION), sample_time)?;
+        Ok(control_loop.run((DURATION / sample_time).round() as usize)?)
+    }
+}
+
+impl Contender {
+    /// Parameters of this observer under some sensor noise \[m\].
+    pub fn parameters(&self, noise: f64) -> Vec<(&'static str, Value<'static>)> {
+        let mut parameters = self.parameters.to_vec();
+        if self.knows_noise {
+            // A filter cannot be told that its sensor is perfect.
+            parameters.push(("observer.position_noise", Value::Real(noise.max(1e-12))));
+        }
+        parameters
+    }
+}
+
+/// Root mean square of `estimate - truth` over the scored part of a run.
+pub fn rms_error(trace: &Trace, truth: &str, estimate: &str) -> f64 {
+    let (Some(truth), Some(estimate)) = (trace.column(truth), trace.column(estimate)) else {
+        return f64::NAN;
+    };
+    let scored = trace.time.iter().zip(estimate.iter().zip(truth)).filter(|(time, _)| **time >= SCORED_FROM);
+    let (sum, count) = scored.fold((0.0, 0.0), |(sum, count), (_, (estimate, truth))| {
+        (sum + (estimate - truth) * (estimate - truth), count + 1.0)
+    });
+    (sum / count).sqrt()
+}
+
+/// Whether the rotor stayed near the centre all the time.
+pub fn stayed_up(trace: &Trace) -> bool {
+    trace.column("plant.position").is_some_and(|position| position.iter().all(|x| x.abs() <= LOST_BEYOND))
+}
