@@ -36,8 +36,13 @@ def stepping(unit: str, time: float, step_size: float, message: list[str]) -> Of
     return Offence(f"{unit}-step-{time}-{step_size}", unit, lambda fmu: fmu.step(time, step_size), message)
 
 
+def call_by_reference(fmu: Fmu, verb: str, *arguments: list) -> object:
+    """Get or set reals by value reference."""
+    return getattr(fmu.slave, verb + ("Real" if fmu.fmi_version == 2 else "Float64"))(*arguments)
+
+
 def reading(unit: str, references: list[int], message: list[str]) -> Offence:
-    return Offence(f"{unit}-get-{references}", unit, lambda fmu: fmu._get_reals(references), message)
+    return Offence(f"{unit}-get-{references}", unit, lambda fmu: call_by_reference(fmu, "get", references), message)
 
 
 REAL_INPUTS = [
@@ -75,7 +80,12 @@ NOT_SETTABLE = [
 WRONG_REFERENCE = [
     reading(PLANT, [999], ["999", "unknown", "expected 0 to"]),
     reading(CONTROLLER, [1, 999], ["999", "unknown", "expected 0 to"]),
-    Offence("set-999", CONTROLLER, lambda fmu: fmu._set_reals([1, 999], [0.5, 0.5]), ["999", "unknown"]),
+    Offence(
+        "set-999",
+        CONTROLLER,
+        lambda fmu: call_by_reference(fmu, "set", [1, 999], [0.5, 0.5]),
+        ["999", "unknown"],
+    ),
     Offence("get-another-type", CONTROLLER, lambda fmu: fmu.slave.getBoolean([1]), ["position", "a real variable"]),
 ]
 WRONG_TIME = [
