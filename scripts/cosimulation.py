@@ -1,0 +1,145 @@
+"""Co-simulation FMUs of FMI 2.0 and FMI 3.0 behind one small class, with variables addressed by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from fmpy import extract, read_model_description
+from fmpy.fmi2 import FMU2Slave
+from fmpy.fmi3 import FMU3Slave
+from fmpy.model_description import ModelVariable
+from fmpy.simulation import instantiate_fmu
+
+Value = float | int | bool | str
+
+# fmpy passes the messages of all FMI 2.0 instances to the callback that was registered last, even after the instance
+# it belongs to is gone, so callbacks must never be collected.
+_callbacks: list[object] = []
+
+
+class Fmu:
+    """One instance of a co-simulation FMU.
+
+    Values are in the variables' units, times in s; an enumeration is set and read as the name of its item::
+
+        with Fmu(Path("dist/fmi3/MagneticBearingPlant.fmu")) as plant:
+            plant.initialize({"initial.position": 0.001, "map": "exact"})
+            plant.set({"voltage": -50.0})
+            plant.step(time=0.0, step_size=1e-3)
+            print(plant.get("position"))
+    """
+
+    def __init__(self, path: Path, log: Callable[[str], None] | None = None) -> None:
+        """Load and instantiate the FMU at `path`; its messages go to `log`, or to standard output."""
+        self.description = read_model_description(path)
+        self.fmi_version = int(self.description.fmiVersion[0])
+        self.variables = {variable.name: variable for variable in self.description.modelVariables}
+        self._references = {name: variable.valueReference for name, variable in self.variables.items()}
+        self._folder = TemporaryDirectory(prefix="fmu-")
+        extract(path, unzipdir=self._folder.name)
+        try:
+            self.slave: FMU2Slave | FMU3Slave = instantiate_fmu(
+                self._folder.name, self.description, "CoSimulation", logger=_logger(log)
+            )
+        except Exception:
+            self._folder.cleanup()
+            raise
+        _callbacks.append(self.slave.callbacks if self.fmi_version == 2 else self.slave.logMessage)
+        reals = "Real" if self.fmi_version == 2 else "Float64"
+        self._get_reals = getattr(self.slave, f"get{reals}")
+        self._set_reals = getattr(self.slave, f"set{reals}")
+
+    def __enter__(self) -> Fmu:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Free the instance and remove the extracted files."""
+        self.slave.freeInstance()
+        self._folder.cleanup()
+
+    def initialize(
+        self, values: Mapping[str, Value] | None = None, start_time: float = 0.0, stop_time: float | None = None
+    ) -> None:
+        """Set `values`, parameters and inputs, and run the initialization; times in s."""
+        if self.fmi_version == 2:
+            self.slave.setupExperiment(startTime=start_time, stopTime=stop_time)
+            self.set(values or {})
+            self.slave.enterInitializationMode()
+        else:
+            self.set(values or {})
+            self.slave.enterInitializationMode(startTime=start_time, stopTime=stop_time)
+        self.slave.exitInitializationMode()
+
+    def step(self, time: float, step_size: float) -> None:
+        """Advance from `time` by `step_size`, both in s, with the inputs held."""
+        self.slave.doStep(currentCommunicationPoint=time, communicationStepSize=step_size)
+
+    def get(self, name: str) -> Value:
+        """Value of the variable `name`; of an enumeration, the item's name."""
+        variable = self._variable(name)
+        value = self._accessor("get", variable)([variable.valueReference])[0]
+        if variable.type == "Enumeration":
+            return next(item for item, number in enumeration_items(variable).items() if number == value)
+        return bool(value) if variable.type == "Boolean" else value
+
+    def set(self, values: Mapping[str, Value]) -> None:
+        """Give values to variables of any type; an enumeration takes the name of an item or its number."""
+        for name, value in values.items():
+            variable = self._variable(name)
+            is_item = variable.type == "Enumeration" and isinstance(value, str)
+            number = item_number(variable, value) if is_item else value
+            self._accessor("set", variable)([variable.valueReference], [number])
+
+    def get_reals(self, names: Sequence[str]) -> list[float]:
+        """Values of several real variables in one call."""
+        return self._get_reals([self._references[name] for name in names])
+
+    def set_reals(self, names: Sequence[str], values: Sequence[float]) -> None:
+        """Give values to several real variables in one call."""
+        self._set_reals([self._references[name] for name in names], values)
+
+    def display_unit(self, name: str) -> tuple[str, float]:
+        """Unit in which the real variable `name` should be shown, and how many of it make one of its own unit."""
+        variable = self._variable(name)
+        unit_name = variable.unit or variable.declaredType.unit
+        shown = variable.displayUnit or variable.declaredType.displayUnit
+        unit = next(unit for unit in self.description.unitDefinitions if unit.name == unit_name)
+        factors = {display.name: float(display.factor) for display in unit.displayUnits}
+        return (shown, factors[shown]) if shown in factors else (unit_name, 1.0)
+
+    def _variable(self, name: str) -> ModelVariable:
+        try:
+            return self.variables[name]
+        except KeyError:
+            raise KeyError(f"{self.description.modelName} has no variable {name!r}") from None
+
+    def _accessor(self, verb: str, variable: ModelVariable) -> Callable[..., list]:
+        kind = variable.type
+        if kind == "Enumeration":
+            kind = "Integer" if self.fmi_version == 2 else "Int64"
+        return getattr(self.slave, verb + kind)
+
+
+def enumeration_items(variable: ModelVariable) -> dict[str, int]:
+    """Items of an enumeration variable: name and number."""
+    return {item.name: int(item.value) for item in variable.declaredType.items}
+
+
+def item_number(variable: ModelVariable, name: str) -> int:
+    """Number of the item called `name` of an enumeration variable."""
+    items = enumeration_items(variable)
+    if name not in items:
+        raise ValueError(f"{variable.name} = {name}: expected one of {', '.join(items)}")
+    return items[name]
+
+
+def _logger(log: Callable[[str], None] | None) -> Callable[..., None] | None:
+    """Callback of either FMI version that passes the text on; the message is its last argument in both."""
+    if log is None:
+        return None
+    return lambda *arguments: log(arguments[-1].decode("utf-8", errors="replace"))

@@ -1,0 +1,173 @@
+"""The product's public interface: names, kinds, units and start values that users rely on."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import pytest
+from cosimulation import enumeration_items
+from fmpy import read_model_description
+from fmpy.model_description import ModelDescription, ModelVariable
+from packages import CONTROLLER, PLANT, fmu_path
+
+
+class Expected(NamedTuple):
+    """What a variable must be; `unit` of an enumeration is its items, `start` None where the unit computes it."""
+
+    kind: str
+    causality: str
+    unit: str | list[str] | None
+    start: float | str | None
+
+
+def measured(unit: str) -> Expected:
+    return Expected("real", "input", unit, 0.0)
+
+
+def output(unit: str | None, kind: str = "real") -> Expected:
+    return Expected(kind, "output", unit, None)
+
+
+def parameter(unit: str, start: float) -> Expected:
+    return Expected("real", "parameter", unit, start)
+
+
+def count(start: int) -> Expected:
+    return Expected("integer", "parameter", None, start)
+
+
+def choice(items: str, start: str) -> Expected:
+    return Expected("enumeration", "parameter", items.split(), start)
+
+
+INTERFACE = {
+    PLANT: {
+        "voltage": measured("V"),
+        "position": output("m"),
+        "velocity": output("m/s"),
+        "flux": output("Wb"),
+        "voltage_measured": output("V"),
+        "position_measured": output("m"),
+        "initial.position": parameter("m", 0.01),
+        "initial.velocity": parameter("m/s", 0.0),
+        "initial.flux": parameter("Wb", 1e-9),
+        "bias_flux": parameter("Wb", 0.0),
+        "saturation_flux": parameter("Wb", 0.0022),
+        "epsilon": Expected("real", "calculatedParameter", "1", None),
+        "sensor.noise": parameter("m", 0.0),
+        "sensor.resolution": parameter("m", 0.0),
+        "sensor.seed": count(1),
+        "process.flux_noise": parameter("Wb", 0.0),
+        "map": choice("exact printed", "exact"),
+    },
+    CONTROLLER: {
+        "position": measured("m"),
+        "voltage_applied": measured("V"),
+        "state.velocity": measured("m/s"),
+        "state.flux": measured("Wb"),
+        "voltage": output("V"),
+        "estimate.position": output("m"),
+        "estimate.velocity": output("m/s"),
+        "estimate.flux": output("Wb"),
+        "observer.residual": output("m"),
+        "observer.iterations": output(None, "integer"),
+        "observer.converged": output(None, "boolean"),
+        "tick_time": Expected("real", "local", "s", None),
+        "sample_time": parameter("s", 1e-3),
+        "observer.kind": choice("newton", "newton"),
+        "observer.map": choice("printed exact", "printed"),
+        "observer.max_iterations": count(10),
+        "observer.step_size": parameter("1", 1.0),
+        "observer.initial.position": parameter("m", 0.0),
+        "observer.initial.velocity": parameter("m/s", 0.0),
+        "observer.initial.flux": parameter("Wb", 1e-9),
+        "observer.voltage_source": choice("command applied", "command"),
+        "controller.law": choice("a b c", "a"),
+        "controller.feedback": choice("estimate state", "estimate"),
+        "controller.k1": parameter("V/m", 0.92),
+        "controller.k2": parameter("V.s/m", 9.94),
+        "controller.initial_voltage": parameter("V", -150.0),
+        "controller.voltage_limit": parameter("V", 150.0),
+        "bias_flux": parameter("Wb", 0.0),
+        "saturation_flux": parameter("Wb", 0.0022),
+    },
+}
+CASES = [(unit, name) for unit, variables in INTERFACE.items() for name in variables]
+KINDS = {
+    "Real": "real",
+    "Float64": "real",
+    "Integer": "integer",
+    "Int32": "integer",
+    "Boolean": "boolean",
+    "Enumeration": "enumeration",
+}
+# Exponents of kg, m, s, A.
+BASE_UNITS = {
+    "m": (0, 1, 0, 0),
+    "m/s": (0, 1, -1, 0),
+    "m/s2": (0, 1, -2, 0),
+    "s": (0, 0, 1, 0),
+    "V": (1, 2, -3, -1),
+    "Wb": (1, 2, -2, -1),
+    "V/m": (1, 1, -3, -1),
+    "V.s/m": (1, 1, -2, -1),
+    "1": (0, 0, 0, 0),
+}
+
+
+def description(fmi_version: int, unit: str) -> ModelDescription:
+    return read_model_description(fmu_path(fmi_version, unit))
+
+
+def find(fmi_version: int, unit: str, name: str) -> ModelVariable:
+    return next(v for v in description(fmi_version, unit).modelVariables if v.name == name)
+
+
+@pytest.mark.parametrize(("unit", "name"), CASES)
+def test_variable(fmi_version: int, unit: str, name: str) -> None:
+    variable, expected = find(fmi_version, unit, name), INTERFACE[unit][name]
+    assert KINDS[variable.type] == expected.kind
+    assert variable.causality == expected.causality
+    if expected.kind == "real":
+        assert (variable.unit or variable.declaredType.unit) == expected.unit
+    if expected.start is None:
+        assert variable.start is None
+    elif expected.kind == "enumeration":
+        items = enumeration_items(variable)
+        assert set(expected.unit) <= set(items)
+        assert int(variable.start) == items[expected.start]
+    else:
+        assert float(variable.start) == expected.start
+
+
+@pytest.mark.parametrize("unit", INTERFACE)
+def test_every_variable_is_described(fmi_version: int, unit: str) -> None:
+    assert [v.name for v in description(fmi_version, unit).modelVariables if not v.description] == []
+
+
+@pytest.mark.parametrize("unit", INTERFACE)
+def test_units_are_defined_by_the_right_base_units(fmi_version: int, unit: str) -> None:
+    for definition in description(fmi_version, unit).unitDefinitions:
+        base = definition.baseUnit
+        assert (base.kg, base.m, base.s, base.A) == BASE_UNITS[definition.name], definition.name
+        assert (base.K, base.mol, base.cd, base.rad) == (0, 0, 0, 0)
+        assert (base.factor, base.offset) == (1.0, 0.0)
+
+
+@pytest.mark.parametrize("unit", INTERFACE)
+def test_real_parameters_have_a_range_around_their_start(fmi_version: int, unit: str) -> None:
+    for variable in description(fmi_version, unit).modelVariables:
+        if variable.causality == "parameter" and KINDS[variable.type] in ("real", "integer"):
+            assert float(variable.min) <= float(variable.start) <= float(variable.max), variable.name
+
+
+@pytest.mark.parametrize("unit", INTERFACE)
+def test_value_references_with_start_are_unique(fmi_version: int, unit: str) -> None:
+    references = [v.valueReference for v in description(fmi_version, unit).modelVariables if v.start is not None]
+    assert len(references) == len(set(references))
+
+
+@pytest.mark.parametrize("unit", INTERFACE)
+def test_both_versions_describe_the_same_variables(unit: str) -> None:
+    two, three = ([(v.name, v.causality, v.variability) for v in description(n, unit).modelVariables] for n in (2, 3))
+    assert two == three
