@@ -26,8 +26,7 @@ pub static VOLT_SECOND_PER_METRE: UnitOfMeasure =
 pub static PER_SECOND: UnitOfMeasure = UnitOfMeasure { name: "1/s", exponents: [0, 0, -1, 0], display: None };
 pub static PER_SECOND_SQUARED: UnitOfMeasure =
     UnitOfMeasure { name: "1/s2", exponents: [0, 0, -2, 0], display: None };
-pub static SECOND: UnitOfMeasure =
-    UnitOfMeasure { name: "s", exponents: [0, 0, 1, 0], display: Some(("ms", 1e3)) };
+pub static SECOND: UnitOfMeasure = UnitOfMeasure { name: "s", exponents: [0, 0, 1, 0], display: None };
 pub static ONE: UnitOfMeasure = UnitOfMeasure { name: "1", exponents: [0, 0, 0, 0], display: None };
 
 /// Type definition of a real variable: what is measured, in which unit, and how large it usually is.
