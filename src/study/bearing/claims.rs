@@ -328,3 +328,41 @@ fn global_stability(bearing: &Bearing) -> Result<Claim, StudyError> {
                 .to_owned(),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A run over 10 s whose displacement decays at `rate` \[1/s\] and whose flux estimate is off by `offset` \[Wb\]
+    /// up to `until` \[s\].
+    fn run(rate: f64, offset: f64, until: f64) -> Run {
+        let time: Vec<f64> = (0..=10_000).map(|k| f64::from(k) * 1e-3).collect();
+        let position: Vec<f64> = time.iter().map(|t| 0.01 * (-rate * t).exp()).collect();
+        let flux = vec![0.1; time.len()];
+        let estimate = time.iter().map(|t| if *t <= until { 0.1 + offset } else { 0.1 }).collect();
+        let zero = vec![0.0; time.len()];
+        Run {
+            state: [position.clone(), zero.clone(), flux],
+            estimate: [position, zero.clone(), estimate],
+            voltage: zero,
+            time,
+        }
+    }
+
+    #[test]
+    fn settling_is_found_or_not() {
+        // 2 % are reached at ln(50) / rate.
+        let settled = settling_time(&run(1.0, 0.0, 0.0)).unwrap();
+        assert!((settled - 50f64.ln()).abs() < 2e-3);
+        assert_eq!(settling_time(&run(0.1, 0.0, 0.0)), None);
+    }
+
+    #[test]
+    fn convergence_can_fail() {
+        let judge = |run: &Run| convergence("id", "", "", &[run]).verdict;
+        assert_eq!(judge(&run(1.0, 0.01, 0.04)), Verdict::Reproduced);
+        assert_eq!(judge(&run(1.0, 0.01, 0.06)), Verdict::NotReproduced);
+        // Less than 1 % of the flux cannot be seen.
+        assert_eq!(judge(&run(1.0, 0.0009, 5.0)), Verdict::Reproduced);
+    }
+}

@@ -1,12 +1,13 @@
 //! A figure as SVG.
 
 use std::error::Error;
-use std::ops::Range;
 use std::sync::Once;
 
 use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::prelude::*;
 
+use super::axis::{decades, decimals, tick};
+use super::points::{extent, visible};
 use super::{FONT, Figure, Panel, Series, Stroke};
 use crate::study::StudyError;
 
@@ -30,9 +31,6 @@ const PALETTE: [RGBColor; 9] = [
     RGBColor(110, 64, 170),
     RGBColor(150, 150, 150),
 ];
-
-/// Most points a line keeps; more cannot be seen in a panel.
-const RESOLUTION: usize = 2 * PANEL.0 as usize;
 
 /// Pixels in drawing units.
 const fn px(pixels: u32) -> u32 {
@@ -109,12 +107,6 @@ fn draw_panel(panel: &Panel, area: &Drawing<'_>) -> Result<(), Box<dyn Error>> {
             canvas.draw(decades(x_range).log_scale(), decades(y_range).log_scale(), &power, &power)
         }
     }
-}
-
-/// Whole decades around a range, at least one.
-fn decades((low, high): (f64, f64)) -> Range<f64> {
-    let (low, high) = (10f64.powf(low.log10().floor()), 10f64.powf(high.log10().ceil()));
-    low..if high > low { high } else { 10.0 * low }
 }
 
 /// A panel, the points of it that are shown, and where it is drawn.
@@ -247,101 +239,4 @@ fn emptiest_corner(panel: &Panel, shown: &[Vec<(f64, f64)>]) -> SeriesLabelPosit
     let fewest = corners.iter().map(|corner| corner.1).min();
     let emptiest = corners.into_iter().find(|corner| Some(corner.1) == fewest);
     emptiest.map_or(SeriesLabelPosition::UpperRight, |corner| corner.0)
-}
-
-/// The points of each series inside the x range that can be drawn, thinned to what a panel resolves.
-fn visible(panel: &Panel) -> Vec<Vec<(f64, f64)>> {
-    let (start, end) = panel.x_range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
-    let is_drawable = |&(x, y): &(f64, f64)| {
-        x >= start
-            && x <= end
-            && y.is_finite()
-            && (!panel.x_logarithmic || x > 0.0)
-            && (!panel.logarithmic || y > 0.0)
-    };
-    panel
-        .series
-        .iter()
-        .map(|series| {
-            let points = thin(series.points.iter().copied().filter(is_drawable).collect());
-            if series.stroke == Stroke::Held { staircase(&points) } else { points }
-        })
-        .collect()
-}
-
-/// Adds a corner before each new value.
-fn staircase(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
-    let corners = points.windows(2).flat_map(|pair| [pair[0], (pair[1].0, pair[0].1)]);
-    corners.chain(points.last().copied()).collect()
-}
-
-/// Keeps the smallest and largest point of each of a few hundred bins, in their order.
-fn thin(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
-    if points.len() <= RESOLUTION {
-        return points;
-    }
-    let bin = points.len().div_ceil(RESOLUTION / 2);
-    points
-        .chunks(bin)
-        .flat_map(|chunk| {
-            let by_value = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
-            let low = chunk.iter().min_by(by_value).copied();
-            let high = chunk.iter().max_by(by_value).copied();
-            let mut pair = [low, high];
-            pair.sort_by(|a, b| a.map(|point| point.0).partial_cmp(&b.map(|point| point.0)).expect("finite"));
-            pair.into_iter().flatten()
-        })
-        .collect()
-}
-
-/// Smallest and largest value, 0 to 1 if there is none.
-fn extent(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    values
-        .fold(None, |range: Option<(f64, f64)>, value| {
-            Some(range.map_or((value, value), |(low, high)| (low.min(value), high.max(value))))
-        })
-        .unwrap_or((0.0, 1.0))
-}
-
-/// Decimals that tell the ticks of an axis of this length apart.
-fn decimals(length: f64) -> usize {
-    (1.0 - length.log10().floor()).clamp(0.0, 12.0) as usize
-}
-
-/// Tick label; very small and very large numbers in powers of ten.
-fn tick(value: f64, decimals: usize) -> String {
-    if decimals > 4 && value != 0.0 {
-        return format!("{value:.1e}");
-    }
-    let text = format!("{value:.decimals$}");
-    // No "-0.00".
-    if text.trim_start_matches('-').chars().all(|c| c == '0' || c == '.') {
-        text.replace('-', "")
-    } else {
-        text
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn thinning_keeps_the_extremes() {
-        let mut points: Vec<(f64, f64)> = (0..100_000).map(|k| (f64::from(k), 0.0)).collect();
-        points[12_345].1 = 7.0;
-        points[54_321].1 = -3.0;
-        let thinned = thin(points);
-        assert!(thinned.len() <= RESOLUTION + 2);
-        assert!(thinned.contains(&(12_345.0, 7.0)) && thinned.contains(&(54_321.0, -3.0)));
-        assert!(thinned.windows(2).all(|pair| pair[0].0 <= pair[1].0));
-    }
-
-    #[test]
-    fn ticks_are_readable() {
-        assert_eq!(tick(-0.0001, 2), "0.00");
-        assert_eq!(tick(2.5, decimals(10.0)), "2");
-        assert_eq!(tick(0.25, decimals(1.0)), "0.2");
-        assert_eq!(tick(3e-9, decimals(1e-8)), "3.0e-9");
-    }
 }

@@ -1,6 +1,8 @@
 //! Line charts in panels, drawn once as SVG and rendered from that to PNG, with a font that comes along.
 
+mod axis;
 mod draw;
+mod points;
 mod raster;
 
 pub use draw::svg;
