@@ -121,6 +121,7 @@ impl KalmanObserver {
     /// The first sample corrects the initial state; there is no step before it. The estimate is the filter's own
     /// from the first sample on, and counts as converged from the third. After a sample that yields nothing finite
     /// the last estimate stands and the filter starts over.
+    #[inline(never)]
     pub fn update(&mut self, settings: &KalmanSettings, position: f64, applied_voltage: f64) -> Estimate {
         let mut filter = self.filter;
         if self.samples > 0 {

@@ -35,8 +35,9 @@ pub struct Estimate {
 /// Maximum norm of finite numbers' differences, finite also when one overflows.
 #[inline]
 fn largest_magnitude<const N: usize>(differences: [f64; N]) -> f64 {
-    differences.iter().fold(0.0, |largest, difference| {
+    let larger = |largest: f64, difference: &f64| {
         let magnitude = difference.abs();
-        if magnitude > largest { f64::MAX.min(magnitude) } else { largest }
-    })
+        if magnitude > largest { magnitude } else { largest }
+    };
+    differences.iter().fold(0.0, larger).min(f64::MAX)
 }

@@ -50,13 +50,10 @@ impl NewtonObserver {
     /// Takes the sample y\[k\] = `position` \[m\] and the voltage \[V\] that acted since the sample before.
     ///
     /// Until two past samples exist the estimate is the measured position with the initial velocity and flux.
+    #[inline(always)]
     pub fn update(&mut self, settings: &NewtonSettings, position: f64, applied_voltage: f64) -> Estimate {
         if self.samples < 2 {
-            self.positions = [self.positions[1], position];
-            self.voltage = applied_voltage;
-            self.samples += 1;
-            self.estimate.position = position;
-            return Estimate { state: self.estimate, residual: 0.0, iterations: 0, converged: false };
+            return self.fill_window(position, applied_voltage);
         }
         let window = Window {
             positions: [self.positions[0], self.positions[1], position],
@@ -69,7 +66,7 @@ impl NewtonObserver {
             if settings.step_size == 1.0 && !settings.line_search {
                 window.solve::<true>(settings, self.retarded)
             } else {
-                window.solve::<false>(settings, self.retarded)
+                window.solve_by_shorter_steps(settings, self.retarded)
             };
         // Steps 7 and 8 of the paper's algorithm: forward once for the next start, twice for the estimate.
         let next = forward(oldest, effects[0], window.voltages[0], settings.sample_time);
@@ -91,6 +88,16 @@ impl NewtonObserver {
             window.positions[2] - state.position,
         ]);
         Estimate { state, residual, iterations, converged }
+    }
+
+    /// One of the first two samples.
+    #[cold]
+    fn fill_window(&mut self, position: f64, applied_voltage: f64) -> Estimate {
+        self.positions = [self.positions[1], position];
+        self.voltage = applied_voltage;
+        self.samples += 1;
+        self.estimate.position = position;
+        Estimate { state: self.estimate, residual: 0.0, iterations: 0, converged: false }
     }
 }
 

@@ -102,6 +102,7 @@ impl ReducedNewtonObserver {
     /// Takes the sample y\[k\] = `position` \[m\] and the voltage \[V\] that acted since the sample before.
     ///
     /// Until two past samples exist the estimate is the measured position with the initial velocity and flux.
+    #[inline(never)]
     pub fn update(
         &mut self,
         settings: &ReducedNewtonSettings,

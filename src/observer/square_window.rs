@@ -6,10 +6,14 @@
 //! the second difference, and the other two follow by substitution. This is algebra, not approximation; the
 //! iterates are those of (6) for every d and alpha.
 
-use super::CONVERGED;
 use super::newton::NewtonSettings;
 use super::step_length::{moved, step_length};
+use super::{CONVERGED, largest_magnitude};
 use crate::plant::magnetic_bearing::{ForceEffect, State};
+
+/// Rounding error of a second difference, relative to the positions in it: each new position of a plant is the sum of
+/// three terms, which makes two roundings per step, in two steps, and as much again for those of the model.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// The equations (5) at one sample.
 pub(super) struct Window {
@@ -33,13 +37,14 @@ impl Window {
     /// its last digit. An iteration whose result is not finite is dropped and ends the search.
     ///
     /// The usual case of full steps (`FULL_STEPS`) is compiled on its own, without a step length.
-    #[inline]
+    #[inline(always)]
     pub fn solve<const FULL_STEPS: bool>(&self, settings: &NewtonSettings, guess: State) -> Solution {
         let NewtonSettings { sample_time, max_iterations, .. } = *settings;
         let [oldest, middle, newest] = self.positions;
         let rise = middle - oldest;
         let curvature = (newest - middle) - rise;
         let rate = 1.0 / sample_time;
+        let resolution = ROUNDING * largest_magnitude(self.positions);
 
         let mut state = guess;
         let mut converged = false;
@@ -52,6 +57,14 @@ impl Window {
             let [first_slope, second_slope] = model.slopes;
             let slope = (sample_time * first_slope.velocity - first_slope.position) + second_slope.position;
             let unexplained = (curvature - (sample_time * first.velocity - first.position)) - second.position;
+            if settings.step_size == 1.0 && unexplained.abs() <= resolution {
+                // The positions tell no more. Solving for their rounding errors would only blur the flux, the more
+                // the smaller it is, and a predicted branch makes the estimate wait for no division.
+                let velocity = (rise - first.position) * rate;
+                let converged = unexplained.abs() < CONVERGED * (slope * state.flux).abs();
+                state = State { position: oldest, velocity, flux: state.flux };
+                return Solution { state, effects: model.effects, iterations, converged };
+            }
             let correction = unexplained * (1.0 / slope);
             let fall = first.position + first_slope.position * correction;
             let velocity = (rise - fall) * rate;
@@ -86,6 +99,12 @@ impl Window {
         Solution { state, effects, iterations, converged }
     }
 
+    /// As [`Self::solve`] with alpha below 1 or a line search.
+    #[inline(never)]
+    pub fn solve_by_shorter_steps(&self, settings: &NewtonSettings, guess: State) -> Solution {
+        self.solve::<false>(settings, guess)
+    }
+
     /// |Y - H(w)|^2 \[m2\]
     fn squared_residual(&self, settings: &NewtonSettings, w: State) -> f64 {
         let NewtonSettings { bearing, map, sample_time, .. } = *settings;
@@ -106,7 +125,7 @@ struct Linearisation {
 }
 
 impl Linearisation {
-    #[inline]
+    #[inline(always)]
     fn at(settings: &NewtonSettings, flux: f64, voltages: [f64; 2]) -> Self {
         let NewtonSettings { bearing, map, sample_time, .. } = *settings;
         let middle_flux = flux + voltages[0] * sample_time;

@@ -47,6 +47,7 @@ impl WindowedNewtonObserver {
     ///
     /// Until two past samples exist the estimate is the measured position with the initial velocity and flux; until
     /// N - 1 of them do, the window is as long as there are samples.
+    #[inline(never)]
     pub fn update(
         &mut self,
         settings: &WindowedNewtonSettings,

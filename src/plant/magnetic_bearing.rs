@@ -80,7 +80,7 @@ impl MagneticBearing {
     }
 
     /// Force effect over a step that starts with `flux` \[Wb\].
-    #[inline]
+    #[inline(always)]
     pub fn force_effect(&self, map: Map, flux: f64, voltage: f64, duration: f64) -> ForceEffect {
         let flux_after = flux + voltage * duration;
         if map == Map::Exact && flux * flux_after < 0.0 {
@@ -95,7 +95,7 @@ impl MagneticBearing {
     /// velocity:  T (eps (x3 + z) / 2 + s (x3^2 + z (x3 + z)) / 3)
     /// position:  T^2 (eps (2 x3 + z) / 6 + s (3 x3^2 + z (2 x3 + z)) / 12)
     /// ```
-    #[inline]
+    #[inline(always)]
     fn effect_with_sign(&self, sign: f64, flux: f64, voltage: f64, duration: f64) -> ForceEffect {
         let flux_after = flux + voltage * duration;
         let (once, twice) = (flux + flux_after, 2.0 * flux + flux_after);
@@ -109,6 +109,7 @@ impl MagneticBearing {
     }
 
     /// (4a) to the zero crossing at t1 = -x3/u, then from zero flux with the sign of the voltage.
+    #[cold]
     fn effect_across_zero(&self, flux: f64, voltage: f64, duration: f64) -> ForceEffect {
         let crossing = -flux / voltage;
         let rest = duration - crossing;
@@ -123,7 +124,7 @@ impl MagneticBearing {
     /// Derivative of [`Self::force_effect`] with respect to the flux at the start; all forms are free of
     /// cancellation, also for a vanishing voltage. For the printed map d|x3|/dx3 = sgn(x3) and d sgn(x3)/dx3 = 0,
     /// as the paper assumes.
-    #[inline]
+    #[inline(always)]
     pub fn force_effect_slope(&self, map: Map, flux: f64, voltage: f64, duration: f64) -> ForceEffect {
         let flux_after = flux + voltage * duration;
         if map == Map::Exact && flux * flux_after < 0.0 {
@@ -139,6 +140,7 @@ impl MagneticBearing {
     }
 
     /// Slope when the flux crosses zero, with a = |x3| before and b = |x3 + u T| after.
+    #[cold]
     fn slope_across_zero(&self, a: f64, b: f64, voltage: f64, duration: f64) -> ForceEffect {
         let bias = self.epsilon * duration;
         ForceEffect {
@@ -156,10 +158,10 @@ impl MagneticBearing {
 }
 
 /// sgn(x3) of (4a). The printed map knows sgn(0) = 0; from zero flux the true motion follows the voltage's sign.
-#[inline]
+#[inline(always)]
 fn flux_sign(map: Map, flux: f64, voltage: f64) -> f64 {
     if flux != 0.0 {
-        flux.signum()
+        1f64.copysign(flux)
     } else if map == Map::Exact && voltage != 0.0 {
         voltage.signum()
     } else {

@@ -199,19 +199,21 @@ pub static DESCRIPTION: Description = Description {
          A master that steps both at once delays the voltage by one step: choose observer.voltage_source = applied \
          and wire voltage_applied to the plant's voltage_measured.",
         "Printed in the paper: newton with its parameters d and alpha, the line search of Remark 5, windows of more \
-         than three samples (footnote to (5)), reduced_newton with its filter time, the laws a, b, c with their \
-         gains, u(0) and the limit. The systems of equations of a Newton iteration are solved by elimination, which \
-         changes nothing but the speed. All start values are the paper's.",
+         than three samples (footnote to (5)), reduced_newton with its filter, the laws a, b, c with their gains, \
+         u(0) and the limit; the start values of d, alpha, gains, u(0) and limit are the paper's. The systems of \
+         equations of a Newton iteration are solved by elimination, which changes nothing but the speed. \
+         With alpha = 1 newton stops where nothing but rounding errors of the positions is left to explain.",
         "Beyond the paper: observer.map = exact, since the printed map is wrong where the flux crosses zero; \
          reduced_newton_compensated; kalman with its noise parameters; the law flux_cascade.",
         "Which observer: newton with map = exact and three samples when the position is free of noise, as in a \
-         simulation, where it is exact to round-off. newton with a longer window when the paper's method has to \
-         stand some noise; a window of N samples costs N times the time and divides the error of the flux by about \
-         N^2.5. reduced_newton only to reproduce the paper: its filter's lag biases the flux by a tenth of its peak \
-         and more. reduced_newton_compensated where that method is wanted without the bias; it stands no more noise \
-         than newton. kalman for every real sensor: it always uses the exact map, whatever observer.map says, \
-         corrects from the first sample on, and needs observer.position_noise to be about right; \
-         observer.flux_noise = 1e-6 Wb stands for a drive that is off by 1 mV at 1 ms, 0 for a perfect model.",
+         simulation, where it is exact to round-off; 1e-9 m of noise already drown it. newton with a longer window \
+         when the paper's method has to stand some noise: a window of N samples costs N times the time, and the \
+         error of the flux falls as N^-2.5. reduced_newton only to reproduce the paper: the lag of its filter biases \
+         the flux by a tenth of its peak and more. reduced_newton_compensated where that method is wanted without \
+         the bias; it stands hardly more noise than newton. kalman for every real sensor: it always uses the exact \
+         map, whatever observer.map says, corrects from the first sample on, and needs observer.position_noise to be \
+         about right; observer.flux_noise = 1e-6 Wb stands for a drive that is off by 1 mV at 1 ms, 0 for a perfect \
+         model.",
         "Which law: a, b, c to reproduce the paper; with the printed gains they need minutes to settle. \
          flux_cascade to settle: with its start values within 2 s from all starts of Table 1. It knows the bias of \
          the bearing from bias_flux and saturation_flux, as the observers do.",
