@@ -138,6 +138,9 @@ pub static DESCRIPTION: Description = Description {
     stop_time: 10.0,
 };
 
+/// Ticks in one step, minutes of computing; more can only be a mistake, as an end time that stands for "never".
+const LARGEST_NUMBER_OF_TICKS: i64 = 1_000_000_000;
+
 /// The controller as a unit.
 #[derive(Clone)]
 pub struct MagneticBearingController {
@@ -256,7 +259,7 @@ impl Unit for MagneticBearingController {
     }
 
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError> {
-        for k in self.clock.advance(duration) {
+        for k in self.clock.advance_at_most(duration, LARGEST_NUMBER_OF_TICKS)? {
             self.values[TICK_TIME] = self.clock.time_of(k);
             self.tick(journal);
         }
