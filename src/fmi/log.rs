@@ -156,6 +156,8 @@ impl Write for Message {
     fn write_str(&mut self, text: &str) -> fmt::Result {
         let mut encoded = [0; 4];
         text.chars().try_for_each(|character| match character {
+            // #4# stands for the variable with the value reference 4.
+            '#' => self.push(b"##"),
             '%' if self.double_percent => self.push(b"%%"),
             '\0' => self.push(b"?"),
             _ => self.push(character.encode_utf8(&mut encoded).as_bytes()),
@@ -206,6 +208,12 @@ mod tests {
     fn percent_signs_cannot_become_conversions() {
         assert_eq!(text(format_args!("100 %s"), true), "100 %%s");
         assert_eq!(text(format_args!("100 %s"), false), "100 %s");
+    }
+
+    #[test]
+    fn number_signs_cannot_become_references() {
+        assert_eq!(text(format_args!("#1#"), true), "##1##");
+        assert_eq!(text(format_args!("#1#"), false), "##1##");
     }
 
     #[test]
