@@ -60,10 +60,15 @@ impl Logger {
         LOG_CATEGORIES.iter().position(|(known, _)| *known == name)
     }
 
+    /// A call was refused with [`Status::Error`].
+    pub(super) fn error(&self, message: fmt::Arguments<'_>) {
+        self.refusal(Status::Error, message);
+    }
+
     /// A call was refused.
     #[cold]
-    pub(super) fn error(&self, message: fmt::Arguments<'_>) {
-        self.send(Status::Error, ERROR, message);
+    pub(super) fn refusal(&self, status: Status, message: fmt::Arguments<'_>) {
+        self.send(status, ERROR, message);
     }
 
     /// The instance is lost.
