@@ -4,6 +4,8 @@ mod harness;
 
 mod allowed_calls_fmi2;
 mod allowed_calls_fmi3;
+mod instantiation;
 mod life_cycle;
+mod logging;
 #[cfg(feature = "tools")]
 mod symbols;
