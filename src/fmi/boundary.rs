@@ -6,7 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use super::{CallError, Function, Instance, Phase, Status};
 
 /// Runs `body` on the instance behind `handle` if `function` may be called now; turns refusals into a log message
-/// and [`Status::Error`], a panic into [`Status::Fatal`] and an instance that can only be freed.
+/// and the status of the error, a panic into [`Status::Fatal`] and an instance that can only be freed.
 ///
 /// # Safety
 /// `handle` is null or came from an instantiate function of this library, was not freed, and no other call uses it
@@ -28,8 +28,9 @@ pub(super) unsafe fn enter(
     match outcome {
         Ok(Ok(())) => Status::Ok as i32,
         Ok(Err(error)) => {
-            instance.logger.error(format_args!("{}: {error}", function.name));
-            Status::Error as i32
+            let status = error.status();
+            instance.logger.refusal(status, format_args!("{}: {error}", function.name));
+            status as i32
         }
         Err(_) => {
             instance.phase = Phase::Fatal;

@@ -46,6 +46,14 @@ impl CommunicationPoint {
                 expected,
             });
         }
+        if !(point + step_size).is_finite() {
+            let expected = "a step that ends at a finite time";
+            return Err(CallError::WrongTime {
+                argument: "communicationStepSize",
+                value: step_size,
+                expected,
+            });
+        }
         let gap = point - self.now;
         if gap.abs() <= ROUNDING * point.abs().max(self.now.abs()).max(step_size) {
             Ok(step_size)
@@ -92,5 +100,7 @@ mod tests {
             assert!(message(1.0, step_size).starts_with("communicationStepSize"));
         }
         assert!(message(f64::NAN, 0.1).starts_with("currentCommunicationPoint = NaN s"));
+        let late = CommunicationPoint::new(1e308);
+        assert!(late.duration(1e308, 1e308).unwrap_err().to_string().ends_with("ends at a finite time"));
     }
 }

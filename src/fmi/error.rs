@@ -1,10 +1,11 @@
 //! Why a call was refused. The instance is as it was before the call.
 
+use super::Status;
 use crate::unit::UnitError;
 use crate::unit::value::ValueError;
 use thiserror::Error;
 
-/// Refusal of a call; the boundary logs it after the function's name and returns [`super::Status::Error`].
+/// Refusal of a call; the boundary logs it after the function's name and returns [`CallError::status`].
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum CallError {
     #[error("not allowed in the phase \"{0}\"")]
@@ -31,4 +32,18 @@ pub enum CallError {
     UnknownCategory(usize),
     #[error("not offered by this unit: {0}")]
     NotOffered(&'static str),
+    #[error("this function tells nothing about the fmi2StatusKind {0}")]
+    NoSuchStatus(i32),
+}
+
+impl CallError {
+    /// What the refused function returns.
+    pub fn status(&self) -> Status {
+        match self {
+            // "If a status is required which cannot be retrieved by the slave it returns fmi2Discard", FMI 2.0.5,
+            // section 4.2.3.
+            Self::NoSuchStatus(_) => Status::Discard,
+            _ => Status::Error,
+        }
+    }
 }

@@ -60,10 +60,15 @@ impl Logger {
         LOG_CATEGORIES.iter().position(|(known, _)| *known == name)
     }
 
+    /// A call was refused with [`Status::Error`].
+    pub(super) fn error(&self, message: fmt::Arguments<'_>) {
+        self.refusal(Status::Error, message);
+    }
+
     /// A call was refused.
     #[cold]
-    pub(super) fn error(&self, message: fmt::Arguments<'_>) {
-        self.send(Status::Error, ERROR, message);
+    pub(super) fn refusal(&self, status: Status, message: fmt::Arguments<'_>) {
+        self.send(status, ERROR, message);
     }
 
     /// The instance is lost.
@@ -156,6 +161,8 @@ impl Write for Message {
     fn write_str(&mut self, text: &str) -> fmt::Result {
         let mut encoded = [0; 4];
         text.chars().try_for_each(|character| match character {
+            // #4# stands for the variable with the value reference 4.
+            '#' => self.push(b"##"),
             '%' if self.double_percent => self.push(b"%%"),
             '\0' => self.push(b"?"),
             _ => self.push(character.encode_utf8(&mut encoded).as_bytes()),
@@ -206,6 +213,12 @@ mod tests {
     fn percent_signs_cannot_become_conversions() {
         assert_eq!(text(format_args!("100 %s"), true), "100 %%s");
         assert_eq!(text(format_args!("100 %s"), false), "100 %s");
+    }
+
+    #[test]
+    fn number_signs_cannot_become_references() {
+        assert_eq!(text(format_args!("#1#"), true), "##1##");
+        assert_eq!(text(format_args!("#1#"), false), "##1##");
     }
 
     #[test]

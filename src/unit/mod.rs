@@ -48,6 +48,8 @@ impl Journal for Silence {
 pub enum UnitError {
     #[error("{name} would become {value} {unit} within the step: expected a finite number")]
     Diverged { name: &'static str, value: f64, unit: &'static str },
+    #[error("{ticks} ticks within one step of {duration} s: expected at most {limit}")]
+    TooManyTicks { ticks: i64, duration: f64, limit: i64 },
 }
 
 /// An exported unit: a flat array of values, indexed by value reference, and what it takes to advance them.

@@ -1,12 +1,14 @@
 //! Ticks of a sampled controller at t = k * period, counted in integers.
 //!
 //! Importers accumulate rounding: t = 1.0000000000000007, h = 0.09999999999999998. The clock adds up the step
-//! sizes with a compensated sum, which stays exact to the last digit however many steps there are, and takes a
-//! tick when the time before it is over up to a millionth of a period. Ticks thus never depend on how the
-//! interval was cut into steps.
+//! sizes with a compensated sum, which stays exact to the last digit however many steps there are, and a tick
+//! belongs to a step only if it lies more than a ten-thousandth of a period before the step's end. Ticks thus never
+//! depend on how the interval was cut into steps, not even when an importer rounds its step size to some ten digits.
+
+use super::UnitError;
 
 /// Share of a period by which a communication point may miss a tick and still mean it.
-const TOLERANCE: f64 = 1e-6;
+const TOLERANCE: f64 = 1e-4;
 
 /// Clock with integer ticks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,6 +44,19 @@ impl SampleClock {
         first..self.next
     }
 
+    /// As [`SampleClock::advance`]; refused, the clock untouched, if more than `limit` ticks lie in `duration`.
+    #[inline]
+    pub fn advance_at_most(&mut self, duration: f64, limit: i64) -> Result<core::ops::Range<i64>, UnitError> {
+        let mut clock = *self;
+        let ticks = clock.advance(duration);
+        let number = ticks.end.saturating_sub(ticks.start);
+        if number > limit {
+            return Err(UnitError::TooManyTicks { ticks: number, duration, limit });
+        }
+        *self = clock;
+        Ok(ticks)
+    }
+
     /// Time of tick `k` \[s\].
     pub fn time_of(&self, k: i64) -> f64 {
         k as f64 * self.period
@@ -52,7 +67,8 @@ impl SampleClock {
         let periods = (self.elapsed.0 + self.elapsed.1) / self.period;
         // The quotient itself is only good to some last digits; this matters beyond 1e9 periods.
         let tolerance = TOLERANCE.max(8.0 * f64::EPSILON * periods.abs());
-        let bound = periods - tolerance;
+        // Beyond the range of numbers the tolerance is as large as what it is taken from.
+        let bound = if periods.is_finite() { periods - tolerance } else { periods };
         // Rounds up; the casts saturate, and 2^63 ticks are out of reach.
         let below = bound as i64;
         if (below as f64) < bound { below.saturating_add(1) } else { below }
@@ -74,10 +90,33 @@ mod tests {
     }
 
     #[test]
+    fn too_many_ticks_are_counted_and_refused() {
+        for duration in [1.0, 1e300, f64::MAX] {
+            let mut clock = SampleClock::new(1e-3, 0.0);
+            let refused = clock.advance_at_most(duration, 999).unwrap_err();
+            assert!(
+                matches!(refused, UnitError::TooManyTicks { ticks: 1000.., limit: 999, .. }),
+                "{refused}"
+            );
+            assert_eq!(clock.advance_at_most(0.999, 999), Ok(0..999));
+        }
+    }
+
+    #[test]
     fn a_hundred_million_steps_lose_no_tick() {
         let mut clock = SampleClock::new(1e-4, 0.0);
         for k in 0..100_000_000 {
             assert_eq!(clock.advance(1e-4), k..k + 1);
+        }
+    }
+
+    #[test]
+    fn a_rounded_step_size_takes_no_tick_early_for_an_hour() {
+        // A third of a millisecond, given with twelve digits: after an hour the sum is 3.6 ns ahead.
+        let mut clock = SampleClock::new(1e-3, 0.0);
+        for step in 1..=10_800_000i64 {
+            clock.advance(0.000_333_333_333_334);
+            assert_eq!(clock.next, (step + 2) / 3, "step {step}");
         }
     }
 

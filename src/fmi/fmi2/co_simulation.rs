@@ -47,7 +47,7 @@ pub unsafe extern "C" fn fmi2GetStatus(
 ) -> fmi2Status {
     // SAFETY: the caller's promise.
     unsafe {
-        status(component, &may::GET_STATUS, kind == FMI2_DO_STEP_STATUS, value, |_| Status::Ok as fmi2Status)
+        status(component, &may::GET_STATUS, kind, FMI2_DO_STEP_STATUS, value, |_| Status::Ok as fmi2Status)
     }
 }
 
@@ -63,7 +63,7 @@ pub unsafe extern "C" fn fmi2GetRealStatus(
 ) -> fmi2Status {
     // SAFETY: the caller's promise.
     unsafe {
-        status(component, &may::GET_REAL_STATUS, kind == FMI2_LAST_SUCCESSFUL_TIME, value, |instance| {
+        status(component, &may::GET_REAL_STATUS, kind, FMI2_LAST_SUCCESSFUL_TIME, value, |instance| {
             instance.communication.now()
         })
     }
@@ -72,15 +72,15 @@ pub unsafe extern "C" fn fmi2GetRealStatus(
 /// The standard defines no integer status.
 ///
 /// # Safety
-/// A live handle, used by one thread at a time; `value` is null or writable.
+/// A live handle, used by one thread at a time; `value` is not touched.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetIntegerStatus(
     component: fmi2Component,
-    _kind: fmi2StatusKind,
-    value: *mut fmi2Integer,
+    kind: fmi2StatusKind,
+    _value: *mut fmi2Integer,
 ) -> fmi2Status {
     // SAFETY: the caller's promise.
-    unsafe { status(component, &may::GET_INTEGER_STATUS, false, value, |_| 0) }
+    unsafe { enter(component, &may::GET_INTEGER_STATUS, |_| Err(CallError::NoSuchStatus(kind))) }
 }
 
 /// Whether the unit wants to end the simulation: never.
@@ -94,7 +94,7 @@ pub unsafe extern "C" fn fmi2GetBooleanStatus(
     value: *mut fmi2Boolean,
 ) -> fmi2Status {
     // SAFETY: the caller's promise.
-    unsafe { status(component, &may::GET_BOOLEAN_STATUS, kind == FMI2_TERMINATED, value, |_| FMI2_FALSE) }
+    unsafe { status(component, &may::GET_BOOLEAN_STATUS, kind, FMI2_TERMINATED, value, |_| FMI2_FALSE) }
 }
 
 /// Text for a pending step; empty, since none is ever pending.
@@ -108,27 +108,26 @@ pub unsafe extern "C" fn fmi2GetStringStatus(
     value: *mut fmi2String,
 ) -> fmi2Status {
     // SAFETY: the caller's promise.
-    unsafe {
-        status(component, &may::GET_STRING_STATUS, kind == FMI2_PENDING_STATUS, value, |_| c"".as_ptr())
-    }
+    unsafe { status(component, &may::GET_STRING_STATUS, kind, FMI2_PENDING_STATUS, value, |_| c"".as_ptr()) }
 }
 
-/// Reports one piece of status, if the function knows that kind.
+/// Reports one piece of status, if the kind is the one that the function knows.
 ///
 /// # Safety
 /// As for the exported functions.
 unsafe fn status<T>(
     component: fmi2Component,
     function: &Function,
-    is_known: bool,
+    kind: fmi2StatusKind,
+    known: fmi2StatusKind,
     target: *mut T,
     value: impl FnOnce(&crate::fmi::Instance) -> T,
 ) -> fmi2Status {
     // SAFETY: the caller's promise.
     unsafe {
         enter(component, function, |instance| {
-            if !is_known {
-                return Err(CallError::NotOffered("this function knows no such fmi2StatusKind"));
+            if kind != known {
+                return Err(CallError::NoSuchStatus(kind));
             }
             report(target, value(instance));
             Ok(())

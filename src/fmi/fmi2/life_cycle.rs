@@ -63,7 +63,11 @@ pub unsafe extern "C" fn fmi2Instantiate(
     let callback = unsafe { functions.as_ref() }
         .and_then(|functions| Some(Callback::Fmi2(functions.logger?, functions.component_environment)))
         .unwrap_or(Callback::None);
-    let refusal = (fmu_type != FMI2_CO_SIMULATION).then_some("model exchange");
+    let refusal = match fmu_type {
+        FMI2_CO_SIMULATION => None,
+        FMI2_MODEL_EXCHANGE => Some("model exchange"),
+        _ => Some("an unknown fmi2Type"),
+    };
     // SAFETY: the caller's promise.
     let (name, token) = unsafe { (c_string(instance_name), c_string(guid)) };
     create(|| instantiate("fmi2Instantiate", name, token, callback, logging_on != FMI2_FALSE, refusal))

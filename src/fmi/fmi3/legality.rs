@@ -52,7 +52,9 @@ const WRITABLE_DISCRETE: &[Phase] = &[
     ClockActivationMode,
 ];
 const INITIALIZED: &[Phase] = &[EventMode, ContinuousTimeMode, StepMode, ClockActivationMode];
-const CLOCKED: &[Phase] = &[InitializationMode, EventMode, StepMode, ClockActivationMode];
+/// Clocks tick in Event Mode and during their activation only, never in Step Mode.
+const CLOCKED: &[Phase] = &[EventMode, ClockActivationMode];
+const SCHEDULABLE: &[Phase] = &[InitializationMode, EventMode, ClockActivationMode];
 const EVALUABLE: &[Phase] = &[InitializationMode, EventMode, ContinuousTimeMode, Terminated];
 const DIFFERENTIABLE: &[Phase] = &[InitializationMode, EventMode, ContinuousTimeMode, StepMode, Terminated];
 
@@ -91,7 +93,7 @@ pub const SET_UINT64: Function = Function::new("fmi3SetUInt64", WRITABLE_DISCRET
 pub const SET_BOOLEAN: Function = Function::new("fmi3SetBoolean", WRITABLE_DISCRETE);
 pub const SET_STRING: Function = Function::new("fmi3SetString", WRITABLE_DISCRETE);
 pub const SET_BINARY: Function = Function::new("fmi3SetBinary", WRITABLE_DISCRETE);
-pub const SET_CLOCK: Function = Function::new("fmi3SetClock", CLOCKED);
+pub const SET_CLOCK: Function = Function::new("fmi3SetClock", &[EventMode]);
 
 pub const GET_NUMBER_OF_VARIABLE_DEPENDENCIES: Function =
     Function::new("fmi3GetNumberOfVariableDependencies", SETTABLE);
@@ -110,16 +112,15 @@ pub const ENTER_CONFIGURATION_MODE: Function =
     Function::new("fmi3EnterConfigurationMode", &[Instantiated, EventMode, StepMode, ClockActivationMode]);
 pub const EXIT_CONFIGURATION_MODE: Function =
     Function::new("fmi3ExitConfigurationMode", &[ConfigurationMode, ReconfigurationMode]);
-pub const GET_INTERVAL_DECIMAL: Function = Function::new("fmi3GetIntervalDecimal", CLOCKED);
-pub const GET_INTERVAL_FRACTION: Function = Function::new("fmi3GetIntervalFraction", CLOCKED);
-pub const GET_SHIFT_DECIMAL: Function = Function::new("fmi3GetShiftDecimal", CLOCKED);
-pub const GET_SHIFT_FRACTION: Function = Function::new("fmi3GetShiftFraction", CLOCKED);
-pub const SET_INTERVAL_DECIMAL: Function = Function::new("fmi3SetIntervalDecimal", CLOCKED);
-pub const SET_INTERVAL_FRACTION: Function = Function::new("fmi3SetIntervalFraction", CLOCKED);
-pub const SET_SHIFT_DECIMAL: Function = Function::new("fmi3SetShiftDecimal", CLOCKED);
-pub const SET_SHIFT_FRACTION: Function = Function::new("fmi3SetShiftFraction", CLOCKED);
-pub const EVALUATE_DISCRETE_STATES: Function =
-    Function::new("fmi3EvaluateDiscreteStates", &[InitializationMode, EventMode, ClockActivationMode]);
+pub const GET_INTERVAL_DECIMAL: Function = Function::new("fmi3GetIntervalDecimal", SCHEDULABLE);
+pub const GET_INTERVAL_FRACTION: Function = Function::new("fmi3GetIntervalFraction", SCHEDULABLE);
+pub const GET_SHIFT_DECIMAL: Function = Function::new("fmi3GetShiftDecimal", &[InitializationMode]);
+pub const GET_SHIFT_FRACTION: Function = Function::new("fmi3GetShiftFraction", &[InitializationMode]);
+pub const SET_INTERVAL_DECIMAL: Function = Function::new("fmi3SetIntervalDecimal", SCHEDULABLE);
+pub const SET_INTERVAL_FRACTION: Function = Function::new("fmi3SetIntervalFraction", SCHEDULABLE);
+pub const SET_SHIFT_DECIMAL: Function = Function::new("fmi3SetShiftDecimal", &[InitializationMode]);
+pub const SET_SHIFT_FRACTION: Function = Function::new("fmi3SetShiftFraction", &[InitializationMode]);
+pub const EVALUATE_DISCRETE_STATES: Function = Function::new("fmi3EvaluateDiscreteStates", &[EventMode]);
 pub const UPDATE_DISCRETE_STATES: Function = Function::new("fmi3UpdateDiscreteStates", &[EventMode]);
 
 pub const ENTER_CONTINUOUS_TIME_MODE: Function = Function::new("fmi3EnterContinuousTimeMode", &[EventMode]);
@@ -144,3 +145,18 @@ pub const GET_OUTPUT_DERIVATIVES: Function =
 pub const DO_STEP: Function = Function::new("fmi3DoStep", &[StepMode]);
 pub const ACTIVATE_MODEL_PARTITION: Function =
     Function::new("fmi3ActivateModelPartition", &[ClockActivationMode]);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clocks_neither_tick_nor_change_in_step_mode() {
+        // Section 4.2: "During Step Mode, clocked variables can not be set or get".
+        for function in [GET_CLOCK, SET_CLOCK, GET_INTERVAL_DECIMAL, SET_SHIFT_FRACTION] {
+            assert!(!function.is_allowed_in(StepMode), "{}", function.name);
+        }
+        assert!(GET_CLOCK.is_allowed_in(EventMode) && !GET_CLOCK.is_allowed_in(InitializationMode));
+        assert!(GET_SHIFT_DECIMAL.is_allowed_in(InitializationMode));
+    }
+}

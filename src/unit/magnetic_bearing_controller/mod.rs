@@ -13,6 +13,9 @@ use crate::controller::{BearingLaw, saturate};
 use crate::observer::{BearingObserver, Estimate};
 use crate::plant::magnetic_bearing::State;
 
+/// Ticks in one step, minutes of computing; more can only be a mistake, as an end time that stands for "never".
+const LARGEST_NUMBER_OF_TICKS: i64 = 1_000_000_000;
+
 /// The controller as a unit.
 #[derive(Clone)]
 pub struct MagneticBearingController {
@@ -146,7 +149,7 @@ impl Unit for MagneticBearingController {
     }
 
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError> {
-        for k in self.clock.advance(duration) {
+        for k in self.clock.advance_at_most(duration, LARGEST_NUMBER_OF_TICKS)? {
             self.values[TICK_TIME] = self.clock.time_of(k);
             self.tick(journal);
         }

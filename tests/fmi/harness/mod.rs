@@ -1,0 +1,229 @@
+//! The exported functions called as a C importer does, both standards behind one interface.
+#![allow(dead_code, reason = "each test binary uses a part")]
+
+mod access;
+mod instantiate;
+mod recorder;
+
+use core::ffi::c_void;
+use std::ffi::CString;
+
+use maglev_fmu::fmi::fmi2::types::fmi2Boolean;
+use maglev_fmu::fmi::fmi2::*;
+use maglev_fmu::fmi::fmi3::types::fmi3Boolean;
+use maglev_fmu::fmi::fmi3::*;
+use maglev_fmu::unit::{Description, UNITS};
+
+pub use instantiate::{instantiate, instantiate_with};
+pub use recorder::{Message, Recorder, fmi2_logger, fmi3_logger};
+
+pub const PLANT: &str = "MagneticBearingPlant";
+pub const CONTROLLER: &str = "MagneticBearingController";
+
+pub const OK: i32 = 0;
+pub const DISCARD: i32 = 2;
+pub const ERROR: i32 = 3;
+pub const FATAL: i32 = 4;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Standard {
+    Fmi2,
+    Fmi3,
+}
+
+pub const BOTH: [Standard; 2] = [Standard::Fmi2, Standard::Fmi3];
+
+/// Every combination of standard and unit.
+pub fn all() -> impl Iterator<Item = (Standard, &'static str)> {
+    BOTH.into_iter().flat_map(|standard| [PLANT, CONTROLLER].map(|unit| (standard, unit)))
+}
+
+/// Phases that an importer can bring an instance into.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    Instantiated,
+    Initialization,
+    Step,
+    Terminated,
+}
+
+pub const PHASES: [Phase; 4] = [Phase::Instantiated, Phase::Initialization, Phase::Step, Phase::Terminated];
+
+impl Phase {
+    /// Name in messages.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Instantiated => "instantiated",
+            Self::Initialization => "initialization mode",
+            Self::Step => "step mode",
+            Self::Terminated => "terminated",
+        }
+    }
+}
+
+pub fn description(unit: &str) -> &'static Description {
+    UNITS.iter().find(|known| known.description.name == unit).expect("a unit").description
+}
+
+/// An instance with a recording logger. Freed when dropped.
+pub struct Component {
+    pub standard: Standard,
+    pub description: &'static Description,
+    pub handle: *mut c_void,
+    pub recorder: Box<Recorder>,
+}
+
+// SAFETY: both standards bind an instance to no thread, they only forbid concurrent calls; not `Sync`.
+unsafe impl Send for Component {}
+
+impl Component {
+    /// An instance called `under test` with logging on.
+    pub fn new(standard: Standard, unit: &str) -> Self {
+        Self::with_logging(standard, unit, true)
+    }
+
+    pub fn with_logging(standard: Standard, unit: &str, logging_on: bool) -> Self {
+        let recorder = Box::new(Recorder::default());
+        let token = CString::new(description(unit).token().as_str()).unwrap();
+        // SAFETY: C strings and callbacks that live long enough.
+        let handle = unsafe {
+            instantiate(standard, c"under test".as_ptr(), token.as_ptr(), recorder.environment(), logging_on)
+        };
+        assert!(!handle.is_null(), "{standard:?} {unit}: {:?}", recorder.messages());
+        Self { standard, description: description(unit), handle, recorder }
+    }
+
+    /// Around an instance that was made elsewhere.
+    pub fn from_handle(standard: Standard, unit: &str, handle: *mut c_void, recorder: Box<Recorder>) -> Self {
+        Self { standard, description: description(unit), handle, recorder }
+    }
+
+    /// A new instance brought into `phase`, with an empty log. In the last two phases some steps were done.
+    pub fn in_phase(standard: Standard, unit: &str, phase: Phase) -> Self {
+        let component = Self::new(standard, unit);
+        if phase != Phase::Instantiated {
+            assert_eq!(component.enter_initialization(0.0, None), OK);
+        }
+        if matches!(phase, Phase::Step | Phase::Terminated) {
+            assert_eq!(component.exit_initialization(), OK);
+            let input = if unit == PLANT { "voltage" } else { "position" };
+            for k in 0..5 {
+                assert_eq!(component.set(input, 1e-3 * f64::from(k)), OK);
+                assert_eq!(component.step(f64::from(k) * 1e-3, 1e-3), OK);
+            }
+        }
+        if phase == Phase::Terminated {
+            assert_eq!(component.terminate(), OK);
+        }
+        component.recorder.clear();
+        component
+    }
+
+    /// Time at which an instance made by [`Component::in_phase`] stands in step mode.
+    pub const STEPPED_TO: f64 = 4.0 * 1e-3 + 1e-3;
+
+    pub fn enter_initialization(&self, start_time: f64, stop_time: Option<f64>) -> i32 {
+        let (stop, has_stop) = (stop_time.unwrap_or(0.0), stop_time.is_some());
+        // SAFETY: a live handle.
+        unsafe {
+            match self.standard {
+                Standard::Fmi2 => {
+                    match fmi2SetupExperiment(
+                        self.handle,
+                        0,
+                        0.0,
+                        start_time,
+                        fmi2Boolean::from(has_stop),
+                        stop,
+                    ) {
+                        OK => fmi2EnterInitializationMode(self.handle),
+                        status => status,
+                    }
+                }
+                Standard::Fmi3 => fmi3EnterInitializationMode(
+                    self.handle,
+                    0,
+                    0.0,
+                    start_time,
+                    fmi3Boolean::from(has_stop),
+                    stop,
+                ),
+            }
+        }
+    }
+
+    pub fn exit_initialization(&self) -> i32 {
+        self.plain(fmi2ExitInitializationMode, fmi3ExitInitializationMode)
+    }
+
+    /// Ready to step from `start_time`.
+    pub fn initialise(&self, start_time: f64) {
+        assert_eq!(self.enter_initialization(start_time, None), OK);
+        assert_eq!(self.exit_initialization(), OK);
+    }
+
+    pub fn terminate(&self) -> i32 {
+        self.plain(fmi2Terminate, fmi3Terminate)
+    }
+
+    pub fn reset(&self) -> i32 {
+        self.plain(fmi2Reset, fmi3Reset)
+    }
+
+    #[inline]
+    pub fn step(&self, time: f64, step_size: f64) -> i32 {
+        // SAFETY: a live handle; the results of FMI 3.0 have room.
+        unsafe {
+            match self.standard {
+                Standard::Fmi2 => fmi2DoStep(self.handle, time, step_size, 1),
+                Standard::Fmi3 => {
+                    let (mut event, mut terminate, mut early, mut reached) = (0, 0, 0, 0.0);
+                    fmi3DoStep(
+                        self.handle,
+                        time,
+                        step_size,
+                        1,
+                        &mut event,
+                        &mut terminate,
+                        &mut early,
+                        &mut reached,
+                    )
+                }
+            }
+        }
+    }
+
+    fn plain(
+        &self,
+        fmi2: unsafe extern "C" fn(*mut c_void) -> i32,
+        fmi3: unsafe extern "C" fn(*mut c_void) -> i32,
+    ) -> i32 {
+        // SAFETY: a live handle.
+        unsafe { if self.standard == Standard::Fmi2 { fmi2(self.handle) } else { fmi3(self.handle) } }
+    }
+
+    /// Asserts that `status` is Error and that the one new message says so with all of `fragments`.
+    #[track_caller]
+    pub fn assert_refused(&self, status: i32, fragments: &[&str]) {
+        let messages = self.recorder.take();
+        assert_eq!(status, ERROR, "{messages:?}");
+        assert_eq!(messages.len(), 1, "{messages:?}");
+        let Message { status, category, text, .. } = &messages[0];
+        assert_eq!((*status, category.as_str()), (ERROR, "logStatusError"));
+        for fragment in fragments {
+            assert!(text.contains(fragment), "\"{text}\" lacks \"{fragment}\"");
+        }
+    }
+}
+
+impl Drop for Component {
+    fn drop(&mut self) {
+        // SAFETY: a live handle, freed once.
+        unsafe {
+            match self.standard {
+                Standard::Fmi2 => fmi2FreeInstance(self.handle),
+                Standard::Fmi3 => fmi3FreeInstance(self.handle),
+            }
+        }
+    }
+}

@@ -1,0 +1,222 @@
+//! Random sequences of calls, sensible or not: nothing crashes, nothing non-finite comes out, and what is refused
+//! leaves no trace.
+
+use core::ptr::{null, null_mut};
+
+use maglev_fmu::fmi::fmi2::*;
+use maglev_fmu::fmi::fmi3::*;
+use proptest::prelude::*;
+use proptest::sample::select;
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+
+use super::harness::{CONTROLLER, Component, ERROR, OK, PLANT, Standard};
+use super::{allowed_calls_fmi2, allowed_calls_fmi3};
+
+/// A call with its arguments. Times are relative to where the instance stands.
+#[derive(Clone, Debug)]
+enum Call {
+    Enter {
+        start: f64,
+        stop: Option<f64>,
+    },
+    Exit,
+    Terminate,
+    Reset,
+    Step {
+        offset: f64,
+        size: f64,
+    },
+    /// With the function of the variable's type, if there is such a variable.
+    Set {
+        reference: u32,
+        value: f64,
+    },
+    SetReals {
+        values: Vec<(u32, f64)>,
+    },
+    /// Integers with any reference.
+    SetIntegers {
+        values: Vec<(u32, i32)>,
+    },
+    Get {
+        references: Vec<u32>,
+    },
+    NullArrays,
+    /// Row of the table of all functions.
+    Any {
+        row: usize,
+    },
+}
+
+fn number() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        4 => -1.0..1.0f64,
+        2 => select(vec![0.0, 1.0, 2.0, 3.0, 1e-3, 0.0022, -150.0, 0.01]),
+        1 => any::<f64>(),
+        1 => select(vec![
+            f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, f64::MIN, f64::MIN_POSITIVE, 5e-324, -0.0, 1e154,
+        ]),
+    ]
+}
+
+fn reference() -> impl Strategy<Value = u32> {
+    prop_oneof![8 => 0..34u32, 1 => any::<u32>()]
+}
+
+/// Bounded where a step is long, so that the test is not: ticks cost time.
+fn step_size() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        6 => select(vec![1e-3, 2.5e-4, 3.7e-3, 1.0 / 60.0, 0.0009999999999999998]),
+        1 => select(vec![0.0, -1e-3, f64::NAN, f64::INFINITY, f64::MAX, 1e300, 5e-324, 1e-12]),
+    ]
+}
+
+fn call() -> impl Strategy<Value = Call> {
+    let times = select(vec![0.0, 0.0, 1.0, -2.5, 1e9, f64::NAN, f64::INFINITY, 1.7e308]);
+    prop_oneof![
+        2 => (times, prop::option::of(number())).prop_map(|(start, stop)| Call::Enter { start, stop }),
+        2 => Just(Call::Exit),
+        1 => prop::bool::weighted(0.3).prop_map(|end| if end { Call::Terminate } else { Call::NullArrays }),
+        1 => prop::bool::weighted(0.3).prop_map(|end| if end { Call::Reset } else { Call::NullArrays }),
+        8 => (prop_oneof![6 => Just(0.0), 1 => Just(1e-16), 1 => number()], step_size())
+            .prop_map(|(offset, size)| Call::Step { offset, size }),
+        8 => (reference(), number()).prop_map(|(reference, value)| Call::Set { reference, value }),
+        3 => prop::collection::vec((reference(), number()), 0..5).prop_map(|values| Call::SetReals { values }),
+        2 => prop::collection::vec((reference(), -2..200i32), 0..3).prop_map(|values| Call::SetIntegers { values }),
+        2 => prop::collection::vec(reference(), 0..6).prop_map(|references| Call::Get { references }),
+        2 => (0..80usize).prop_map(|row| Call::Any { row }),
+    ]
+}
+
+/// Sends a call to an instance that stands at `now`.
+fn send(component: &Component, now: f64, call: &Call) -> i32 {
+    match call {
+        Call::Enter { start, stop } => component.enter_initialization(*start, *stop),
+        Call::Exit => component.exit_initialization(),
+        Call::Terminate => component.terminate(),
+        Call::Reset => component.reset(),
+        Call::Step { offset, size } => component.step(now + offset, *size),
+        // A sample time below 1 ms would make the steps expensive.
+        Call::Set { reference, value } if component.description.variables.len() as u32 <= *reference => {
+            component.set_reals(&[*reference], &[*value])
+        }
+        Call::Set { reference, value } => component.set_reference(*reference, *value),
+        Call::SetReals { values } => {
+            let (references, values): (Vec<_>, Vec<_>) = values.iter().copied().unzip();
+            component.set_reals(&references, &values)
+        }
+        Call::SetIntegers { values } => {
+            let (r, v): (Vec<u32>, Vec<i32>) = values.iter().copied().unzip();
+            // SAFETY: as many values as references.
+            unsafe {
+                match component.standard {
+                    Standard::Fmi2 => fmi2SetInteger(component.handle, r.as_ptr(), r.len(), v.as_ptr()),
+                    Standard::Fmi3 => {
+                        fmi3SetInt32(component.handle, r.as_ptr(), r.len(), v.as_ptr(), v.len())
+                    }
+                }
+            }
+        }
+        Call::Get { references } => component.get_reals(references, &mut vec![0.0; references.len()]),
+        // SAFETY: null is checked.
+        Call::NullArrays => unsafe {
+            match component.standard {
+                Standard::Fmi2 => fmi2SetReal(component.handle, null(), 3, null()),
+                Standard::Fmi3 => fmi3GetFloat64(component.handle, null(), 2, null_mut(), 2),
+            }
+        },
+        Call::Any { row } => {
+            let table = match component.standard {
+                Standard::Fmi2 => allowed_calls_fmi2::table(),
+                Standard::Fmi3 => allowed_calls_fmi3::table(),
+            };
+            // SAFETY: a live handle, valid arguments.
+            unsafe { (table[row % table.len()].call)(component.handle) }
+        }
+    }
+}
+
+/// Half of the sequences begin with an instance that is ready to step.
+fn calls() -> impl Strategy<Value = Vec<Call>> {
+    (any::<bool>(), prop::collection::vec(call(), 1..80)).prop_map(|(is_ready, mut calls)| {
+        if is_ready {
+            calls.splice(0..0, [Call::Enter { start: 0.0, stop: None }, Call::Exit]);
+        }
+        calls
+    })
+}
+
+/// Where the instance stands, as far as it can be asked.
+fn now(component: &Component) -> f64 {
+    match component.get_reference(0) {
+        (OK, time) => time,
+        _ => 0.0,
+    }
+}
+
+/// The wild one gets every call, the tidy one only those that the wild one did not refuse.
+fn check(standard: Standard, unit: &str, calls: &[Call], counts: &mut [u32; 2]) -> Result<(), TestCaseError> {
+    let (wild, tidy) = (Component::new(standard, unit), Component::new(standard, unit));
+    // Steps are cheap only if there are few ticks in them.
+    let sample_time = (unit == CONTROLLER).then(|| wild.reference("sample_time"));
+    for call in calls {
+        let shortens = match call {
+            Call::Set { reference, value } => Some(*reference) == sample_time && *value < 1e-3,
+            Call::SetReals { values } => {
+                values.iter().any(|(reference, value)| Some(*reference) == sample_time && *value < 1e-3)
+            }
+            _ => false,
+        };
+        if shortens {
+            continue;
+        }
+        let time = now(&wild);
+        wild.recorder.clear();
+        let status = send(&wild, time, call);
+        if status == OK {
+            counts[0] += 1;
+            prop_assert_eq!(send(&tidy, time, call), OK, "{:?}", call);
+        } else {
+            counts[1] += 1;
+            // Discard is for FMI 2.0's status functions.
+            prop_assert!(status == ERROR || status == 2, "{:?} {}", call, status);
+            prop_assert!(!wild.recorder.messages().is_empty());
+        }
+        let values = wild.snapshot();
+        prop_assert!(values.iter().all(|bits| f64::from_bits(*bits).is_finite()), "{:?}", call);
+        prop_assert_eq!(values, tidy.snapshot(), "after {:?}", call);
+    }
+    Ok(())
+}
+
+fn run(standard: Standard, unit: &str) {
+    let config = Config { cases: 250, failure_persistence: None, ..Config::default() };
+    let generator = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
+    let mut counts = [0, 0];
+    let counts_cell = std::cell::RefCell::new(&mut counts);
+    TestRunner::new_with_rng(config, generator)
+        .run(&calls(), |calls| check(standard, unit, &calls, &mut counts_cell.borrow_mut()))
+        .unwrap();
+    println!("{standard:?} {unit}: {} calls done, {} refused", counts[0], counts[1]);
+    assert!(counts.iter().all(|count| *count > 1000), "{counts:?}");
+}
+
+#[test]
+fn fmi2_plant_survives_anything() {
+    run(Standard::Fmi2, PLANT);
+}
+
+#[test]
+fn fmi2_controller_survives_anything() {
+    run(Standard::Fmi2, CONTROLLER);
+}
+
+#[test]
+fn fmi3_plant_survives_anything() {
+    run(Standard::Fmi3, PLANT);
+}
+
+#[test]
+fn fmi3_controller_survives_anything() {
+    run(Standard::Fmi3, CONTROLLER);
+}

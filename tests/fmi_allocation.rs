@@ -1,0 +1,179 @@
+//! No call that an importer repeats touches the heap: neither when it works, nor when it logs, nor when it is refused.
+
+#[path = "fmi/harness/mod.rs"]
+mod harness;
+
+use core::ffi::{c_char, c_void};
+use core::mem::transmute;
+use core::sync::atomic::{AtomicU32, Ordering};
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::ffi::CString;
+
+use harness::{BOTH, CONTROLLER, Component, ERROR, OK, PLANT, Standard, all, description, instantiate_with};
+use maglev_fmu::fmi::fmi2::types::fmi2CallbackLogger;
+
+thread_local! {
+    /// Allocations, reallocations and releases of this thread.
+    static CALLS: Cell<u64> = const { Cell::new(0) };
+    /// Blocks that this thread holds.
+    static BLOCKS: Cell<i64> = const { Cell::new(0) };
+}
+
+/// The system's allocator, counting.
+struct Counting;
+
+fn count(blocks: i64) {
+    CALLS.with(|calls| calls.set(calls.get() + 1));
+    BLOCKS.with(|held| held.set(held.get() + blocks));
+}
+
+// SAFETY: everything is handed on to the system's allocator; counting does not allocate.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count(1);
+        // SAFETY: the caller's promise.
+        unsafe { System.alloc(layout) }
+    }
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        count(-1);
+        // SAFETY: the caller's promise.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        count(1);
+        // SAFETY: the caller's promise.
+        unsafe { System.alloc_zeroed(layout) }
+    }
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count(0);
+        // SAFETY: the caller's promise.
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Uses of the heap while `action` runs.
+fn uses_of_the_heap(action: impl FnOnce()) -> u64 {
+    let before = CALLS.get();
+    action();
+    CALLS.get() - before
+}
+
+/// Loggers that count messages in the environment, an [`AtomicU32`].
+unsafe extern "C" fn count_fmi2(
+    environment: *mut c_void,
+    _: *const c_char,
+    _: i32,
+    _: *const c_char,
+    _: *const c_char,
+) {
+    // SAFETY: the environment that the instance was given.
+    unsafe { &*environment.cast::<AtomicU32>() }.fetch_add(1, Ordering::Relaxed);
+}
+
+unsafe extern "C" fn count_fmi3(environment: *mut c_void, _: i32, _: *const c_char, _: *const c_char) {
+    // SAFETY: the environment that the instance was given.
+    unsafe { &*environment.cast::<AtomicU32>() }.fetch_add(1, Ordering::Relaxed);
+}
+
+fn counting(standard: Standard, unit: &str, messages: &AtomicU32, logging_on: bool) -> Component {
+    type Fixed = unsafe extern "C" fn(*mut c_void, *const c_char, i32, *const c_char, *const c_char);
+    // SAFETY: as for the recording logger of the harness.
+    let logger2 = unsafe { transmute::<Fixed, fmi2CallbackLogger>(count_fmi2) };
+    let token = CString::new(description(unit).token().as_str()).unwrap();
+    let environment = core::ptr::from_ref(messages).cast_mut().cast();
+    let none = core::ptr::null();
+    // SAFETY: C strings; the counter outlives the instance.
+    let handle = unsafe {
+        let (logger2, logger3) = (Some(logger2), Some(count_fmi3 as _));
+        instantiate_with(standard, none, token.as_ptr(), none, environment, logger2, logger3, logging_on)
+    };
+    assert!(!handle.is_null());
+    let component = Component::from_handle(standard, unit, handle, Box::default());
+    component.initialise(0.0);
+    messages.store(0, Ordering::Relaxed);
+    component
+}
+
+#[test]
+fn the_counter_counts() {
+    assert_eq!(uses_of_the_heap(|| drop(std::hint::black_box(Box::new(1)))), 2);
+}
+
+#[test]
+fn steps_gets_and_sets_use_no_heap() {
+    for (standard, unit) in all() {
+        for logging_on in [false, true] {
+            let messages = AtomicU32::new(0);
+            let component = counting(standard, unit, &messages, logging_on);
+            let names = if unit == PLANT {
+                ["voltage", "sensor.noise", "position", "velocity"]
+            } else {
+                ["position", "controller.k2", "voltage", "estimate.flux"]
+            };
+            let [input, tunable, first, second] = names.map(|name| component.reference(name));
+            let others: Vec<u32> = (0..component.description.variables.len() as u32).collect();
+            let mut values = [0.0; 2];
+            let uses = uses_of_the_heap(|| {
+                for k in 0..500 {
+                    let t = f64::from(k) * 1e-3;
+                    // Curved, then straight: the observer converges and diverges again and again.
+                    let value = if k % 50 < 25 { 0.01 + t * t } else { 0.01 };
+                    assert_eq!(component.set_reals(&[input, tunable], &[value, 1e-3 + t]), OK);
+                    assert_eq!(component.step(t, 1e-3), OK);
+                    assert_eq!(component.get_reals(&[first, second], &mut values), OK);
+                    for reference in &others {
+                        assert_eq!(component.get_reference(*reference).0, OK);
+                    }
+                }
+            });
+            let messages = messages.load(Ordering::Relaxed);
+            println!(
+                "{standard:?} {unit}, logging {logging_on}: {uses} uses of the heap, {messages} messages"
+            );
+            assert_eq!(uses, 0);
+            assert_eq!(messages > 3, logging_on && unit == CONTROLLER, "the observer has something to say");
+        }
+    }
+}
+
+#[test]
+fn refusals_use_no_heap() {
+    for (standard, unit) in all() {
+        for logging_on in [false, true] {
+            let messages = AtomicU32::new(0);
+            let component = counting(standard, unit, &messages, logging_on);
+            let input = if unit == PLANT { "voltage" } else { "position" };
+            let input = component.reference(input);
+            let uses = uses_of_the_heap(|| {
+                for wrong in [f64::NAN, f64::INFINITY, -1.0, 0.0] {
+                    assert_eq!(component.step(0.0, wrong), ERROR);
+                    assert_eq!(component.step(7.0 + wrong, 1e-3), ERROR);
+                }
+                assert_eq!(component.step(0.0, f64::MAX), ERROR);
+                assert_eq!(component.set_reals(&[input], &[f64::NAN]), ERROR);
+                assert_eq!(component.set_reals(&[input, 999], &[1.0, 1.0]), ERROR);
+                assert_eq!(component.set_reals(&[0], &[1.0]), ERROR);
+                assert_eq!(component.get_reals(&[999], &mut [0.0]), ERROR);
+                assert_eq!(component.exit_initialization(), ERROR);
+            });
+            assert_eq!(uses, 0, "{standard:?} {unit}, logging {logging_on}");
+            assert_eq!(messages.load(Ordering::Relaxed), 14, "each with a message, logging on or off");
+        }
+    }
+}
+
+#[test]
+fn an_instance_gives_back_what_it_took() {
+    for standard in BOTH {
+        let before = BLOCKS.get();
+        let messages = AtomicU32::new(0);
+        let component = counting(standard, PLANT, &messages, true);
+        assert!(BLOCKS.get() > before);
+        drop(component);
+        assert_eq!(BLOCKS.get(), before);
+    }
+}
