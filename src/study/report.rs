@@ -100,7 +100,10 @@ pub fn quantity(value: f64, unit: &str) -> String {
         let text = format!("{value:.decimals$}");
         if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
     } else {
-        format!("{value:.2e}")
+        // Mantissa without trailing zeros.
+        let text = format!("{value:.2e}");
+        let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+        format!("{}e{exponent}", mantissa.trim_end_matches('0').trim_end_matches('.'))
     };
     if unit == "1" { number } else { format!("{number} {unit}") }
 }
@@ -119,6 +122,7 @@ mod tests {
         assert_eq!(quantity(150.0, "V"), "150 V");
         assert_eq!(quantity(0.0123456, "m"), "0.01235 m");
         assert_eq!(quantity(1.234e-7, "Wb"), "1.23e-7 Wb");
+        assert_eq!(quantity(1e-9, "m"), "1e-9 m");
         assert_eq!(quantity(3.0, "1"), "3");
     }
 

@@ -42,3 +42,52 @@ pub fn cramer_rao(trace: &Trace, sample_time: f64, noise: f64) -> Bound {
         Bound { velocity: 0.0, flux: 0.0 }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Matrix3, Vector3};
+
+    use super::*;
+
+    /// The same bound from the information matrix itself, in the textbook form.
+    fn by_information(trace: &Trace, sample_time: f64, noise: f64) -> Bound {
+        let bearing = MagneticBearing { epsilon: 0.0 };
+        let mut information =
+            Matrix3::from_diagonal(&Vector3::from(INITIAL_VARIANCES.map(|variance| 1.0 / variance)));
+        let (mut velocity, mut flux, mut count) = (0.0, 0.0, 0.0);
+        for (row, time) in trace.time.iter().enumerate() {
+            information[(0, 0)] += 1.0 / (noise * noise);
+            if *time >= SCORED_FROM {
+                let covariance = information.try_inverse().unwrap();
+                velocity += covariance[(1, 1)];
+                flux += covariance[(2, 2)];
+                count += 1.0;
+            }
+            let (flux, voltage) = (trace.columns[0][row], trace.columns[1][row]);
+            let back = bearing.jacobian(Map::Exact, flux, voltage, sample_time).try_inverse().unwrap();
+            information = back.transpose() * information * back;
+        }
+        Bound { velocity: f64::sqrt(velocity / count), flux: f64::sqrt(flux / count) }
+    }
+
+    #[test]
+    fn agrees_with_the_information_matrix() {
+        let sample_time = 1e-2;
+        let time: Vec<f64> = (0..200).map(|k| f64::from(k) * sample_time).collect();
+        let voltage: Vec<f64> = time.iter().map(|t| 2.0 * (7.0 * t).cos()).collect();
+        let flux = time.iter().map(|t| 0.1 + 2.0 / 7.0 * (7.0 * t).sin()).collect();
+        let trace = Trace {
+            names: vec!["plant.flux".to_owned(), "controller.voltage".to_owned()],
+            units: vec![None, None],
+            time,
+            columns: vec![flux, voltage],
+        };
+        // A noise at which the information matrix is still well conditioned.
+        let (noise, relative) = (1e-3, |a: f64, b: f64| (a / b - 1.0).abs());
+        let (bound, reference) =
+            (cramer_rao(&trace, sample_time, noise), by_information(&trace, sample_time, noise));
+        assert!(relative(bound.flux, reference.flux) < 1e-9, "{bound:?} {reference:?}");
+        assert!(relative(bound.velocity, reference.velocity) < 1e-9, "{bound:?} {reference:?}");
+        assert_eq!(cramer_rao(&trace, sample_time, 0.0), Bound { velocity: 0.0, flux: 0.0 });
+    }
+}

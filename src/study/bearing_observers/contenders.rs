@@ -76,6 +76,14 @@ impl Packages {
         })
     }
 
+    pub fn plant(&self) -> &Fmu {
+        &self.plant
+    }
+
+    pub fn controller(&self) -> &Fmu {
+        &self.controller
+    }
+
     /// A run with the sensor in the loop; `parameters` go to the controller.
     pub fn simulate(
         &self,

@@ -5,6 +5,7 @@ mod claims;
 mod comparison;
 mod contenders;
 mod presentation;
+mod settling;
 
 use std::path::Path;
 
@@ -32,7 +33,7 @@ fn seeds(sample_time: f64) -> u32 {
 const PROVENANCE: &[&str] = &[
     "From the paper: the full-order Newton observer, its reduced-order form (section 3.1) and, by a footnote, windows of \
      more than three samples. Not from the paper: the exact model inside the observer, the compensation of the reduced \
-     observer's lag, and the Kalman filter. The paper shows no run with noise and none of the reduced observer.",
+     observer's lag, the Kalman filter and the flux cascade. The paper shows no run with noise and none of the reduced observer.",
     "Law (8a), x1(0) = 0.01 m, flux -0.15 Wb at the start, no bias. Errors are scored after 0.5 s with the true state fed \
      back, so that every observer sees the same data; whether the loop stays up is judged with the estimate fed back. \
      The bound is the posterior Cramer-Rao bound of the same model with the Kalman filter's prior, along the true \
@@ -43,13 +44,19 @@ const PROVENANCE: &[&str] = &[
 pub fn run(packages: &Path, progress: Progress<'_>) -> Result<Findings, StudyError> {
     let packages = Packages::open(packages)?;
     let comparison = Comparison::simulate(&packages, progress)?;
+    progress(0.97, "bearing-observers: laws that settle");
+    let (settling_figure, settling_table) = settling::compare(&packages)?;
+    let mut figures = presentation::figures(&comparison);
+    figures.push(settling_figure);
+    let mut summaries = presentation::tables(&comparison);
+    summaries.push(settling_table);
     Ok(Findings {
         name: "bearing-observers",
         title: "Which observer for a magnetic bearing with a real sensor",
         provenance: PROVENANCE,
-        figures: presentation::figures(&comparison),
+        figures,
         claims: claims::all(&packages, &comparison)?,
-        summaries: presentation::tables(&comparison),
+        summaries,
         advice: presentation::advice(&comparison),
     })
 }
