@@ -87,7 +87,7 @@ fn through_fmus(scenario: &Scenario, plant: FmiVersion, controller: FmiVersion) 
         packaged::instantiate(plant, PLANT, scenario.plant),
         ExchangeOrder::ControllerFirst,
         &[
-            ("position", "position"),
+            ("position_measured", "position"),
             ("velocity", "state.velocity"),
             ("flux", "state.flux"),
             ("voltage_measured", "voltage_applied"),
