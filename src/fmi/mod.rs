@@ -13,6 +13,7 @@ mod instance;
 mod log;
 mod phase;
 mod status;
+mod version;
 
 pub use communication::CommunicationPoint;
 pub use error::CallError;
@@ -20,3 +21,4 @@ pub use instance::Instance;
 pub use log::{Callback, LOG_CATEGORIES, Logger};
 pub use phase::{Function, Phase};
 pub use status::Status;
+pub use version::FmiVersion;

@@ -7,12 +7,13 @@ use std::sync::Arc;
 
 use super::archive::Archive;
 use super::component::Component;
-use super::description::{FmiVersion, ModelDescription};
+use super::description::ModelDescription;
 use super::error::{HostError, Result};
 use super::instance::{Instance, Logging};
 use super::journal::Journal;
 use super::library::LoadedLibrary;
 use super::{fmi2, fmi3};
+use crate::fmi::FmiVersion;
 
 /// An opened FMU: unpacked, its library loaded, its functions resolved. Cheap to clone.
 ///

@@ -7,9 +7,10 @@ use std::path::{Path, PathBuf};
 
 use libloading::Library;
 
-use super::description::{CoSimulation, FmiVersion, ModelDescription};
+use super::description::{CoSimulation, ModelDescription};
 use super::error::{HostError, Result};
 use super::journal::text_of;
+use crate::fmi::FmiVersion;
 
 /// The folders of `binaries` in which a library for this platform may lie, the standard's name first.
 fn platform_folders(version: FmiVersion, architecture: &str, system: &str) -> Vec<String> {

@@ -37,9 +37,10 @@ mod saved_state;
 mod trace;
 mod value;
 
+pub use crate::fmi::FmiVersion;
 pub use archive::Archive;
 pub use description::{
-    Causality, CoSimulation, DefaultExperiment, EnumerationItem, FmiVersion, Kind, ModelDescription, Storage,
+    Causality, CoSimulation, DefaultExperiment, EnumerationItem, Kind, ModelDescription, Storage,
     Variability, Variable,
 };
 pub use error::{HostError, ReportedStatus, Result};

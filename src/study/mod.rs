@@ -4,6 +4,7 @@
 //! that is written to disk goes through [`output`].
 
 pub mod bearing;
+mod bearing_loop;
 pub mod bearing_observers;
 pub mod chart;
 pub mod claim;

@@ -10,17 +10,9 @@ use std::collections::HashMap;
 use serde::Deserialize;
 
 use super::error::{HostError, Result};
+use crate::fmi::FmiVersion;
 
 pub use variable::{Causality, Kind, Storage, Variability, Variable};
-
-/// Major version of the standard that an FMU follows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FmiVersion {
-    /// FMI 2.0.
-    Two,
-    /// FMI 3.0.
-    Three,
-}
 
 /// The co-simulation interface of an FMU.
 #[derive(Clone, Debug, PartialEq)]

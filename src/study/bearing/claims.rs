@@ -1,9 +1,10 @@
 //! What the paper says about its observer and loop, judged by the runs.
 
-use super::scenario::{Run, Scenario, largest};
-use super::{BIAS_FLUXES, Bearing, LAWS, POSITIONS, Runs, SAMPLE_TIME, SIMULATION_TIME, VOLTAGES};
-use crate::host::Logging;
+use super::scenario::{Run, Scenario, largest, simulate};
+use super::{BIAS_FLUXES, LAWS, POSITIONS, Runs, SAMPLE_TIME, SIMULATION_TIME, VOLTAGES};
+use crate::host::Value;
 use crate::study::StudyError;
+use crate::study::bearing_loop::BearingPackages;
 use crate::study::claim::{Claim, Measurement, Verdict};
 
 /// Share of a signal's peak up to which an error counts as zero in a figure.
@@ -12,7 +13,7 @@ const VISIBLE: f64 = 0.01;
 const CONVERGENCE_TIME: f64 = 0.05;
 const STATE_NAMES: [&str; 3] = ["position", "velocity", "flux"];
 
-pub fn all(bearing: &Bearing, runs: &Runs) -> Result<Vec<Claim>, StudyError> {
+pub fn all(packages: &BearingPackages, runs: &Runs) -> Result<Vec<Claim>, StudyError> {
     Ok(vec![
         convergence(
             "observer_converges_within_50_ms",
@@ -39,9 +40,9 @@ pub fn all(bearing: &Bearing, runs: &Runs) -> Result<Vec<Claim>, StudyError> {
         bias(runs),
         iterations(runs),
         settling(runs),
-        exactness(bearing)?,
+        exactness(packages)?,
         table_1(),
-        global_stability(bearing)?,
+        global_stability(packages)?,
     ])
 }
 
@@ -259,13 +260,14 @@ fn settling(runs: &Runs) -> Claim {
 }
 
 /// One step of the plant across a flux zero crossing, by both maps.
-fn exactness(bearing: &Bearing) -> Result<Claim, StudyError> {
+fn exactness(packages: &BearingPackages) -> Result<Claim, StudyError> {
     let step = |map: &str| -> Result<f64, StudyError> {
-        let mut plant = bearing.plant().instantiate("plant", Logging::Off)?;
-        plant.set_by_name("map", map)?;
-        plant.set_by_name("initial.position", 0.0)?;
-        plant.set_by_name("initial.flux", 0.05)?;
-        plant.set_by_name("voltage", -100.0)?;
+        let mut plant = packages.plant(&[
+            ("map", Value::Text(map)),
+            ("initial.position", Value::Real(0.0)),
+            ("initial.flux", Value::Real(0.05)),
+            ("voltage", Value::Real(-100.0)),
+        ])?;
         plant.initialise(0.0, None)?;
         plant.step(0.0, SAMPLE_TIME)?;
         Ok(plant.get_by_name("velocity")?)
@@ -305,9 +307,9 @@ fn table_1() -> Claim {
     }
 }
 
-fn global_stability(bearing: &Bearing) -> Result<Claim, StudyError> {
+fn global_stability(packages: &BearingPackages) -> Result<Claim, StudyError> {
     let duration = 400.0;
-    let run = bearing.simulate(&Scenario::new(0.01, -150.0), duration)?;
+    let run = simulate(packages, &Scenario::new(0.01, -150.0), duration)?;
     // Peak of the displacement over the last period of the slow oscillation.
     let late =
         largest(run.time.iter().zip(&run.state[0]).filter(|(t, _)| **t > duration - 50.0).map(|(_, x)| *x));

@@ -9,8 +9,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
+use super::bearing_loop::BearingPackages;
 use super::{Findings, Progress, StudyError};
-pub use scenario::{Bearing, Feedback, Run, Scenario};
+use scenario::{Feedback, Run, Scenario, simulate};
 
 /// Simulation time of Table 1 \[s\].
 const SIMULATION_TIME: f64 = 10.0;
@@ -37,14 +38,14 @@ const PROVENANCE: &[&str] = &[
 /// Runs everything through the packages in `packages`.
 pub fn run(packages: &Path, progress: Progress<'_>) -> Result<Findings, StudyError> {
     progress(0.0, "bearing: opening the packages");
-    let bearing = Bearing::open(packages)?;
-    let runs = Runs::simulate(&bearing, progress)?;
+    let packages = BearingPackages::open(packages)?;
+    let runs = Runs::simulate(&packages, progress)?;
     Ok(Findings {
         name: "bearing",
         title: "Newton observer for a flux-controlled magnetic bearing",
         provenance: PROVENANCE,
         figures: figures::all(&runs),
-        claims: claims::all(&bearing, &runs)?,
+        claims: claims::all(&packages, &runs)?,
         summaries: Vec::new(),
         advice: Vec::new(),
     })
@@ -63,7 +64,7 @@ struct Runs {
 }
 
 impl Runs {
-    fn simulate(bearing: &Bearing, progress: Progress<'_>) -> Result<Self, StudyError> {
+    fn simulate(packages: &BearingPackages, progress: Progress<'_>) -> Result<Self, StudyError> {
         let mut scenarios = Vec::new();
         for law in LAWS {
             for position in POSITIONS {
@@ -84,7 +85,7 @@ impl Runs {
         let mut runs = scenarios
             .par_iter()
             .map(|scenario| {
-                let run = bearing.simulate(scenario, SIMULATION_TIME)?;
+                let run = simulate(packages, scenario, SIMULATION_TIME)?;
                 let count = done.fetch_add(1, Ordering::Relaxed) + 1;
                 progress(0.9 * count as f64 / scenarios.len() as f64, "bearing: simulating");
                 Ok(run)

@@ -1,10 +1,9 @@
 //! One run of the bearing's control loop through the packaged units.
 
-use std::path::Path;
-
 use super::SAMPLE_TIME;
-use crate::host::{ExchangeOrder, Fmu, HostError, Logging, TwoUnitLoop};
+use crate::host::Value;
 use crate::study::StudyError;
+use crate::study::bearing_loop::BearingPackages;
 
 /// What the law is fed with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -107,60 +106,34 @@ const RECORDED: [(&str, &str); 7] = [
     ("controller", "voltage"),
 ];
 
-/// The two packages of the bearing.
-pub struct Bearing {
-    plant: Fmu,
-    controller: Fmu,
-}
-
-impl Bearing {
-    /// Opens the FMI 3.0 packages below `packages`.
-    pub fn open(packages: &Path) -> Result<Self, HostError> {
-        Ok(Self {
-            plant: Fmu::open(&packages.join("fmi3/MagneticBearingPlant.fmu"))?,
-            controller: Fmu::open(&packages.join("fmi3/MagneticBearingController.fmu"))?,
-        })
-    }
-
-    /// The plant's package.
-    pub fn plant(&self) -> &Fmu {
-        &self.plant
-    }
-
-    /// Runs a scenario for `duration` \[s\], controller first.
-    pub fn simulate(&self, scenario: &Scenario, duration: f64) -> Result<Run, StudyError> {
-        let mut plant = self.plant.instantiate("plant", Logging::Off)?;
-        plant.set_by_name("initial.position", scenario.initial_position)?;
-        plant.set_by_name("bias_flux", scenario.bias_flux)?;
-        let mut controller = self.controller.instantiate("controller", Logging::Off)?;
-        controller.set_by_name("controller.initial_voltage", scenario.initial_voltage)?;
-        controller.set_by_name("controller.law", scenario.law)?;
-        let feedback = match scenario.feedback {
-            Feedback::Estimate => "estimate",
-            Feedback::State => "state",
-        };
-        controller.set_by_name("controller.feedback", feedback)?;
-        controller.set_by_name("observer.max_iterations", scenario.max_iterations)?;
-        controller.set_by_name("bias_flux", scenario.bias_flux)?;
-
-        let mut control_loop = TwoUnitLoop::connect(
-            controller,
-            plant,
-            ExchangeOrder::ControllerFirst,
-            &[("position", "position"), ("velocity", "state.velocity"), ("flux", "state.flux")],
-            &[("voltage", "voltage")],
-        )?;
-        control_loop.record(&RECORDED)?;
-        control_loop.initialise(0.0, Some(duration), SAMPLE_TIME)?;
-        // One more step than fits, so that the last sample is the one at `duration`.
-        let trace = control_loop.run((duration / SAMPLE_TIME).round() as usize + 1)?;
-        let mut columns = trace.columns.into_iter();
-        let mut next = || columns.next().unwrap_or_default();
-        Ok(Run {
-            time: trace.time,
-            state: [next(), next(), next()],
-            estimate: [next(), next(), next()],
-            voltage: next(),
-        })
-    }
+/// Runs a scenario for `duration` \[s\].
+pub fn simulate(packages: &BearingPackages, scenario: &Scenario, duration: f64) -> Result<Run, StudyError> {
+    let feedback = match scenario.feedback {
+        Feedback::Estimate => "estimate",
+        Feedback::State => "state",
+    };
+    let trace = packages.simulate(
+        &[
+            ("initial.position", Value::Real(scenario.initial_position)),
+            ("bias_flux", Value::Real(scenario.bias_flux)),
+        ],
+        &[
+            ("controller.initial_voltage", Value::Real(scenario.initial_voltage)),
+            ("controller.law", Value::Text(scenario.law)),
+            ("controller.feedback", Value::Text(feedback)),
+            ("observer.max_iterations", Value::Integer(scenario.max_iterations)),
+            ("bias_flux", Value::Real(scenario.bias_flux)),
+        ],
+        &RECORDED,
+        SAMPLE_TIME,
+        duration,
+    )?;
+    let mut columns = trace.columns.into_iter();
+    let mut next = || columns.next().unwrap_or_default();
+    Ok(Run {
+        time: trace.time,
+        state: [next(), next(), next()],
+        estimate: [next(), next(), next()],
+        voltage: next(),
+    })
 }

@@ -1,18 +1,19 @@
 //! What the paper says about its observers under other conditions than those of its figures.
 
 use super::comparison::Comparison;
-use super::contenders::{Conditions, Packages, rms_error};
+use super::contenders::{Conditions, rms_error, simulate};
 use super::presentation::index_of;
 use super::{INITIAL_FLUX, NOISES, SAMPLE_TIMES};
 use crate::host::Value;
 use crate::study::StudyError;
+use crate::study::bearing_loop::{BearingPackages, Parameter};
 use crate::study::claim::{Claim, Measurement, Verdict};
 
 /// Largest flux in the runs \[Wb\].
 const SIGNAL: f64 = 0.15;
-const SEEDS: u32 = 10;
+const SEEDS: i32 = 10;
 
-pub fn all(packages: &Packages, comparison: &Comparison) -> Result<Vec<Claim>, StudyError> {
+pub fn all(packages: &BearingPackages, comparison: &Comparison) -> Result<Vec<Claim>, StudyError> {
     Ok(vec![
         reduced_observer(packages)?,
         step_size(packages)?,
@@ -23,20 +24,24 @@ pub fn all(packages: &Packages, comparison: &Comparison) -> Result<Vec<Claim>, S
 
 /// Root mean square flux error \[Wb\] over all seeds, T = 1 ms, true state fed back, observer started right: what noise
 /// does is not to be mixed up with convergence from afar.
-fn flux_error(packages: &Packages, noise: f64, parameters: &[(&str, Value<'_>)]) -> Result<f64, StudyError> {
+fn flux_error(
+    packages: &BearingPackages,
+    noise: f64,
+    parameters: &[Parameter<'_>],
+) -> Result<f64, StudyError> {
     let seeds = if noise > 0.0 { SEEDS } else { 1 };
     let mut sum = 0.0;
     for seed in 0..seeds {
         let conditions = Conditions { sample_time: 1e-3, noise, seed, feedback: "state" };
         let mut started_right = vec![("observer.initial.flux", Value::Real(INITIAL_FLUX))];
         started_right.extend_from_slice(parameters);
-        let trace = packages.simulate(conditions, &started_right)?;
+        let trace = simulate(packages, conditions, &started_right)?;
         sum += rms_error(&trace, "plant.flux", "controller.estimate.flux").powi(2);
     }
     Ok((sum / f64::from(seeds)).sqrt())
 }
 
-fn reduced_observer(packages: &Packages) -> Result<Claim, StudyError> {
+fn reduced_observer(packages: &BearingPackages) -> Result<Claim, StudyError> {
     let times = [1e-4, 1e-3, 1e-2];
     let mut measured = Vec::new();
     for (kind, name) in [("reduced_newton", "printed"), ("reduced_newton_compensated", "lag compensated")] {
@@ -70,7 +75,7 @@ fn reduced_observer(packages: &Packages) -> Result<Claim, StudyError> {
     })
 }
 
-fn step_size(packages: &Packages) -> Result<Claim, StudyError> {
+fn step_size(packages: &BearingPackages) -> Result<Claim, StudyError> {
     let noise = 1e-9;
     let mut measured = Vec::new();
     for alpha in [1.0, 0.5, 0.2, 0.1] {
@@ -94,7 +99,7 @@ fn step_size(packages: &Packages) -> Result<Claim, StudyError> {
     })
 }
 
-fn iterations(packages: &Packages) -> Result<Claim, StudyError> {
+fn iterations(packages: &BearingPackages) -> Result<Claim, StudyError> {
     let noise = 1e-9;
     let mut measured = Vec::new();
     for d in [1, 3, 10, 100] {

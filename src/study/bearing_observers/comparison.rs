@@ -5,8 +5,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use super::bound::{Bound, cramer_rao};
-use super::contenders::{CONTENDERS, Conditions, Packages, rms_error, stayed_up};
+use super::contenders::{CONTENDERS, Conditions, rms_error, simulate, stayed_up};
 use super::{NOISES, SAMPLE_TIMES, seeds};
+use crate::study::bearing_loop::BearingPackages;
 use crate::study::{Progress, StudyError};
 
 /// One observer under one sample time and noise, over all seeds.
@@ -37,8 +38,8 @@ struct Sums {
 }
 
 impl Comparison {
-    pub fn simulate(packages: &Packages, progress: Progress<'_>) -> Result<Self, StudyError> {
-        let cases: Vec<(usize, usize, usize, u32)> = (0..SAMPLE_TIMES.len())
+    pub fn simulate(packages: &BearingPackages, progress: Progress<'_>) -> Result<Self, StudyError> {
+        let cases: Vec<(usize, usize, usize, i32)> = (0..SAMPLE_TIMES.len())
             .flat_map(|time| (0..seeds(SAMPLE_TIMES[time])).map(move |seed| (time, seed)))
             .flat_map(|(time, seed)| (0..NOISES.len()).map(move |noise| (time, noise, seed)))
             .flat_map(|(time, noise, seed)| (0..CONTENDERS.len()).map(move |who| (time, noise, who, seed)))
@@ -86,17 +87,17 @@ impl Sums {
 
 /// One seed: errors on common data, then the loop on estimates.
 fn score(
-    packages: &Packages,
+    packages: &BearingPackages,
     sample_time: f64,
     noise: f64,
     who: usize,
-    seed: u32,
+    seed: i32,
 ) -> Result<Sums, StudyError> {
     let parameters = CONTENDERS[who].parameters(noise);
     let observed =
-        packages.simulate(Conditions { sample_time, noise, seed, feedback: "state" }, &parameters)?;
+        simulate(packages, Conditions { sample_time, noise, seed, feedback: "state" }, &parameters)?;
     let in_loop =
-        packages.simulate(Conditions { sample_time, noise, seed, feedback: "estimate" }, &parameters)?;
+        simulate(packages, Conditions { sample_time, noise, seed, feedback: "estimate" }, &parameters)?;
     let velocity = rms_error(&observed, "plant.velocity", "controller.estimate.velocity");
     let flux = rms_error(&observed, "plant.flux", "controller.estimate.flux");
     Ok(Sums {
@@ -108,7 +109,7 @@ fn score(
 }
 
 /// The bound along the trajectory of the first seed; trajectories of other seeds hardly differ.
-fn bound(packages: &Packages, sample_time: f64, noise: f64) -> Result<Bound, StudyError> {
-    let trace = packages.simulate(Conditions { sample_time, noise, seed: 0, feedback: "state" }, &[])?;
+fn bound(packages: &BearingPackages, sample_time: f64, noise: f64) -> Result<Bound, StudyError> {
+    let trace = simulate(packages, Conditions { sample_time, noise, seed: 0, feedback: "state" }, &[])?;
     Ok(cramer_rao(&trace, sample_time, noise))
 }

@@ -1,20 +1,19 @@
 //! The observers that are compared, and one run of the loop with one of them.
 
-use std::path::Path;
-
 use super::{DURATION, INITIAL_FLUX, LOST_BEYOND, SCORED_FROM};
-use crate::host::{ExchangeOrder, Fmu, HostError, Logging, Trace, TwoUnitLoop, Value};
+use crate::host::{Trace, Value};
 use crate::study::StudyError;
+use crate::study::bearing_loop::{BearingPackages, Parameter};
 
 /// An observer with its parameters of the controller unit.
 pub struct Contender {
     pub name: &'static str,
-    pub parameters: &'static [(&'static str, Value<'static>)],
+    pub parameters: &'static [Parameter<'static>],
     /// Whether the filter is told the sensor's noise.
     pub knows_noise: bool,
 }
 
-const fn contender(name: &'static str, parameters: &'static [(&'static str, Value<'static>)]) -> Contender {
+const fn contender(name: &'static str, parameters: &'static [Parameter<'static>]) -> Contender {
     Contender { name, parameters, knows_noise: false }
 }
 
@@ -49,12 +48,6 @@ pub const CONTENDERS: [Contender; 8] = [
     },
 ];
 
-/// The two packages.
-pub struct Packages {
-    plant: Fmu,
-    controller: Fmu,
-}
-
 /// Conditions of a run.
 #[derive(Clone, Copy)]
 pub struct Conditions {
@@ -62,69 +55,46 @@ pub struct Conditions {
     pub sample_time: f64,
     /// Standard deviation of the sensor \[m\].
     pub noise: f64,
-    pub seed: u32,
+    pub seed: i32,
     /// `state` or `estimate`.
     pub feedback: &'static str,
 }
 
-impl Packages {
-    /// Opens the FMI 3.0 packages below `packages`.
-    pub fn open(packages: &Path) -> Result<Self, HostError> {
-        Ok(Self {
-            plant: Fmu::open(&packages.join("fmi3/MagneticBearingPlant.fmu"))?,
-            controller: Fmu::open(&packages.join("fmi3/MagneticBearingController.fmu"))?,
-        })
-    }
-
-    pub fn plant(&self) -> &Fmu {
-        &self.plant
-    }
-
-    pub fn controller(&self) -> &Fmu {
-        &self.controller
-    }
-
-    /// A run with the sensor in the loop; `parameters` go to the controller.
-    pub fn simulate(
-        &self,
-        conditions: Conditions,
-        parameters: &[(&str, Value<'_>)],
-    ) -> Result<Trace, StudyError> {
-        let Conditions { sample_time, noise, seed, feedback } = conditions;
-        let mut plant = self.plant.instantiate("plant", Logging::Off)?;
-        plant.set_by_name("initial.flux", INITIAL_FLUX)?;
-        plant.set_by_name("sensor.noise", noise)?;
-        plant.set_by_name("sensor.seed", seed as i32)?;
-        let mut controller = self.controller.instantiate("controller", Logging::Off)?;
-        controller.set_by_name("sample_time", sample_time)?;
-        controller.set_by_name("controller.initial_voltage", 0.0)?;
-        controller.set_by_name("controller.feedback", feedback)?;
-        for (name, value) in parameters {
-            controller.set_by_name(name, *value)?;
-        }
-        let mut control_loop = TwoUnitLoop::connect(
-            controller,
-            plant,
-            ExchangeOrder::ControllerFirst,
-            &[("position_measured", "position"), ("velocity", "state.velocity"), ("flux", "state.flux")],
-            &[("voltage", "voltage")],
-        )?;
-        control_loop.record(&[
+/// A run with the sensor in the loop; `parameters` go to the controller.
+pub fn simulate(
+    packages: &BearingPackages,
+    conditions: Conditions,
+    parameters: &[Parameter<'_>],
+) -> Result<Trace, StudyError> {
+    let Conditions { sample_time, noise, seed, feedback } = conditions;
+    let mut controller = vec![
+        ("controller.initial_voltage", Value::Real(0.0)),
+        ("controller.feedback", Value::Text(feedback)),
+    ];
+    controller.extend_from_slice(parameters);
+    packages.simulate(
+        &[
+            ("initial.flux", Value::Real(INITIAL_FLUX)),
+            ("sensor.noise", Value::Real(noise)),
+            ("sensor.seed", Value::Integer(seed)),
+        ],
+        &controller,
+        &[
             ("plant", "position"),
             ("plant", "velocity"),
             ("plant", "flux"),
             ("controller", "voltage"),
             ("controller", "estimate.velocity"),
             ("controller", "estimate.flux"),
-        ])?;
-        control_loop.initialise(0.0, Some(DURATION), sample_time)?;
-        Ok(control_loop.run((DURATION / sample_time).round() as usize)?)
-    }
+        ],
+        sample_time,
+        DURATION,
+    )
 }
 
 impl Contender {
     /// Parameters of this observer under some sensor noise \[m\].
-    pub fn parameters(&self, noise: f64) -> Vec<(&'static str, Value<'static>)> {
+    pub fn parameters(&self, noise: f64) -> Vec<Parameter<'static>> {
         let mut parameters = self.parameters.to_vec();
         if self.knows_noise {
             // A filter cannot be told that its sensor is perfect.

@@ -9,9 +9,9 @@ mod settling;
 
 use std::path::Path;
 
+use super::bearing_loop::BearingPackages;
 use super::{Findings, Progress, StudyError};
 use comparison::Comparison;
-use contenders::Packages;
 
 /// Standard deviations of the position sensor \[m\].
 const NOISES: [f64; 5] = [0.0, 1e-9, 1e-8, 1e-7, 1e-6];
@@ -26,7 +26,7 @@ const INITIAL_FLUX: f64 = -0.15;
 const LOST_BEYOND: f64 = 0.05;
 
 /// Seeds per sample time: a run at 0.1 ms takes ten times as many steps as one at 1 ms.
-fn seeds(sample_time: f64) -> u32 {
+fn seeds(sample_time: f64) -> i32 {
     if sample_time < 1e-3 { 3 } else { 10 }
 }
 
@@ -42,7 +42,7 @@ const PROVENANCE: &[&str] = &[
 
 /// Runs everything through the packages in `packages`.
 pub fn run(packages: &Path, progress: Progress<'_>) -> Result<Findings, StudyError> {
-    let packages = Packages::open(packages)?;
+    let packages = BearingPackages::open(packages)?;
     let comparison = Comparison::simulate(&packages, progress)?;
     progress(0.97, "bearing-observers: laws that settle");
     let (settling_figure, settling_table) = settling::compare(&packages)?;

@@ -1,11 +1,10 @@
 //! How fast the laws bring the rotor to the centre: the printed law (8a) against the flux cascade, on estimates.
 
-use crate::host::{ExchangeOrder, Logging, Trace, TwoUnitLoop, Value};
+use crate::host::{Trace, Value};
+use crate::study::bearing_loop::{BearingPackages, Parameter};
 use crate::study::chart::{Figure, Panel, Series, Stroke};
 use crate::study::report::quantity;
 use crate::study::{FigureWithData, StudyError, Summary, Table};
-
-use super::contenders::Packages;
 
 /// Starts of Table 1: x1(0) \[m\] and u(0) \[V\].
 const POSITIONS: [f64; 3] = [0.0, 0.001, 0.01];
@@ -20,7 +19,7 @@ const SETTLED: f64 = 1e-5;
 /// A law with an observer and a sensor.
 struct Setting {
     name: &'static str,
-    parameters: &'static [(&'static str, Value<'static>)],
+    parameters: &'static [Parameter<'static>],
     /// Standard deviation of the sensor \[m\].
     noise: f64,
 }
@@ -65,7 +64,7 @@ struct Outcome {
 }
 
 /// The figure and the table.
-pub fn compare(packages: &Packages) -> Result<(FigureWithData, Summary), StudyError> {
+pub fn compare(packages: &BearingPackages) -> Result<(FigureWithData, Summary), StudyError> {
     let mut position = Panel::new("position, x1(0) = 10 mm, u(0) = -150 V", "time [s]", "position x1 [mm]");
     let mut distance = Panel::new("distance from the centre", "time [s]", "|x1| [mm]").logarithmic();
     let mut voltage = Panel::new("voltage, first 0.2 s", "time [s]", "voltage u [V]").between(0.0, 0.2);
@@ -122,7 +121,7 @@ pub fn compare(packages: &Packages) -> Result<(FigureWithData, Summary), StudyEr
     Ok((FigureWithData { name: "bearing_flux_cascade".to_owned(), figure, table }, summary))
 }
 
-fn worst(packages: &Packages, setting: &Setting) -> Result<Outcome, StudyError> {
+fn worst(packages: &BearingPackages, setting: &Setting) -> Result<Outcome, StudyError> {
     let mut worst = Outcome { settling_time: 0.0, rest: 0.0, voltage: 0.0 };
     for position in POSITIONS {
         for voltage in VOLTAGES {
@@ -154,30 +153,26 @@ fn judge(trace: &Trace) -> Outcome {
 }
 
 fn simulate(
-    packages: &Packages,
+    packages: &BearingPackages,
     setting: &Setting,
     initial_position: f64,
     initial_voltage: f64,
     bias_flux: f64,
 ) -> Result<Trace, StudyError> {
-    let mut plant = packages.plant().instantiate("plant", Logging::Off)?;
-    plant.set_by_name("initial.position", initial_position)?;
-    plant.set_by_name("bias_flux", bias_flux)?;
-    plant.set_by_name("sensor.noise", setting.noise)?;
-    let mut controller = packages.controller().instantiate("controller", Logging::Off)?;
-    controller.set_by_name("controller.initial_voltage", initial_voltage)?;
-    controller.set_by_name("bias_flux", bias_flux)?;
-    for (name, value) in setting.parameters {
-        controller.set_by_name(name, *value)?;
-    }
-    let mut control_loop = TwoUnitLoop::connect(
-        controller,
-        plant,
-        ExchangeOrder::ControllerFirst,
-        &[("position_measured", "position")],
-        &[("voltage", "voltage")],
-    )?;
-    control_loop.record(&[("plant", "position"), ("controller", "voltage")])?;
-    control_loop.initialise(0.0, Some(DURATION), SAMPLE_TIME)?;
-    Ok(control_loop.run((DURATION / SAMPLE_TIME).round() as usize + 1)?)
+    let mut controller = vec![
+        ("controller.initial_voltage", Value::Real(initial_voltage)),
+        ("bias_flux", Value::Real(bias_flux)),
+    ];
+    controller.extend_from_slice(setting.parameters);
+    packages.simulate(
+        &[
+            ("initial.position", Value::Real(initial_position)),
+            ("bias_flux", Value::Real(bias_flux)),
+            ("sensor.noise", Value::Real(setting.noise)),
+        ],
+        &controller,
+        &[("plant", "position"), ("controller", "voltage")],
+        SAMPLE_TIME,
+        DURATION,
+    )
 }

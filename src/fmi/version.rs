@@ -1,4 +1,4 @@
-//! The two standards a unit is packaged for.
+//! The two versions of the standard.
 
 use std::fmt;
 
