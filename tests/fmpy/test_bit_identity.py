@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from bearing import Loop, bits
+from cosimulation import Value
 from packages import FMI_VERSIONS, REPOSITORY
 
 STEPS = 10_000
@@ -22,34 +23,42 @@ def executable() -> Path:
     return Path(os.environ.get("MAGLEV_FMU", target / "release" / "maglev-fmu"))
 
 
-@pytest.fixture(scope="module")
-def native_trajectory() -> Trajectory:
+# Controllers that between them use every observer and law.
+CONTROLLERS: dict[str, dict[str, Value]] = {
+    "start values": {},
+    "exact map": {"observer.map": "exact", "controller.law": "b"},
+    "line search": {"observer.line_search": True, "observer.step_size": 0.7, "controller.law": "c"},
+    "window": {"observer.window": 30, "observer.map": "exact"},
+    "reduced": {"observer.kind": "reduced_newton"},
+    "compensated": {"observer.kind": "reduced_newton_compensated", "observer.map": "exact"},
+    "kalman": {"observer.kind": "kalman", "observer.position_noise": 1e-7, "controller.law": "flux_cascade"},
+}
+
+
+def native_trajectory(controller: dict[str, Value], steps: int) -> Trajectory:
     """Rows of the loop without FMI, each number as its 64-bit pattern.
 
     One row per sample, as `Loop.step` returns them: at the tick's time position, velocity, flux, and as of the tick
     voltage, estimate.position, estimate.velocity, estimate.flux.
     """
-    command = [executable(), "trace", "--steps", str(STEPS)]
-    text = subprocess.run(command, check=True, capture_output=True, text=True).stdout
-    return [tuple(int(field, 16) for field in row) for row in csv.reader(text.splitlines())]
+    command: list[str | Path] = [executable(), "trace", "--steps", str(steps)]
+    for name, value in controller.items():
+        text = str(value).lower() if isinstance(value, bool) else str(value)
+        command += ["--controller", f"{name}={text}"]
+    output = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    return [tuple(int(field, 16) for field in row) for row in csv.reader(output.splitlines())]
 
 
-@pytest.fixture(scope="module")
-def trajectory() -> Callable[[Loop, int], Trajectory]:
-    """Bit patterns of a loop's rows."""
-    return lambda loop, steps: [bits(row) for row in loop.run(steps)]
-
-
+@pytest.mark.parametrize("controller", CONTROLLERS.values(), ids=CONTROLLERS.keys())
 def test_fmi_equals_native(
-    fmi_version: int,
-    native_trajectory: Trajectory,
-    trajectory: Callable[[Loop, int], Trajectory],
-    open_loop: Callable[..., Loop],
+    fmi_version: int, controller: dict[str, Value], open_loop: Callable[..., Loop]
 ) -> None:
-    through_fmi = trajectory(open_loop(fmi_version), STEPS)
-    assert len(native_trajectory) == STEPS
-    first = next((k for k in range(STEPS) if through_fmi[k] != native_trajectory[k]), None)
-    assert first is None, f"row {first}: {through_fmi[first]} through FMI, {native_trajectory[first]} without"
+    native = native_trajectory(controller, STEPS)
+    loop = open_loop(fmi_version, None, controller)
+    through_fmi = [bits(row) for row in loop.run(STEPS)]
+    assert len(native) == STEPS
+    first = next((k for k in range(STEPS) if through_fmi[k] != native[k]), None)
+    assert first is None, f"row {first}: {through_fmi[first]} through FMI, {native[first]} without"
 
 
 @pytest.mark.parametrize("law", ["a", "b", "c"])
