@@ -89,6 +89,8 @@ def test_runs_with_any_output_interval(any_fmu: Path, output_interval: float) ->
 
 def start_value(variable: ModelVariable) -> Value:
     """Start value as `Fmu.get` returns it."""
+    if variable.type == "Boolean":
+        return variable.start == "true"
     number = variable._python_type(variable.start)
     if variable.type == "Enumeration":
         return next(item for item, value in enumeration_items(variable).items() if value == number)
