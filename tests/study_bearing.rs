@@ -27,6 +27,11 @@ fn figures_claims_and_report_are_written() {
         let svg = std::fs::read_to_string(out.join(format!("{name}.svg"))).unwrap();
         assert!(svg.starts_with("<svg") && svg.contains("time [s]"), "{name}");
         let png = std::fs::read(out.join(format!("{name}.png"))).unwrap();
+        let mut csv = csv::Reader::from_path(out.join(format!("{name}.csv"))).unwrap();
+        let columns = csv.headers().unwrap().len();
+        assert!(columns > 7, "{name}");
+        // Fails on a row of another length.
+        assert_eq!(csv.records().map(Result::unwrap).filter(|row| row.len() == columns).count(), 10_001);
         assert!(png.starts_with(b"\x89PNG") && png.len() > 50_000, "{name}: {} bytes", png.len());
     }
 

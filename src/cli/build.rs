@@ -1,6 +1,6 @@
 //! `maglev-fmu build`
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use maglev_fmu::package::{self, GenerationTime, Library, PackageError};
@@ -25,6 +25,11 @@ impl Default for Build {
 }
 
 impl Build {
+    /// Where the packages go.
+    pub fn out(&self) -> &Path {
+        &self.out
+    }
+
     pub fn run(&self) -> Result<(), PackageError> {
         let libraries = match self.libraries.as_slice() {
             [] => vec![Library::of_this_build()?],

@@ -11,6 +11,7 @@ use std::io::{self, Write};
 
 use clap::{Parser, Subcommand};
 use maglev_fmu::package::WrittenFile;
+use maglev_fmu::study::EXPERIMENTS;
 
 /// Magnetic levitation and magnetic bearings as FMI 2.0 and FMI 3.0 units.
 ///
@@ -35,8 +36,9 @@ impl CommandLine {
     pub fn run(self) -> Result<(), Box<dyn Error>> {
         match self.command {
             None => {
-                build::Build::default().run()?;
-                reproduce::Reproduce::default().run()
+                let build = build::Build::default();
+                build.run()?;
+                reproduce::reproduce(EXPERIMENTS.iter(), build.out(), reproduce::RESULTS.as_ref())
             }
             Some(Command::Build(command)) => Ok(command.run()?),
             Some(Command::Reproduce(command)) => command.run(),

@@ -11,6 +11,9 @@ use maglev_fmu::study::{EXPERIMENTS, Experiment, Findings, output};
 
 use super::say;
 
+/// Where results go unless told otherwise.
+pub const RESULTS: &str = "results";
+
 /// Build the units, run the papers' experiments through them and judge the papers' claims
 #[derive(Debug, Args)]
 pub struct Reproduce {
@@ -18,7 +21,7 @@ pub struct Reproduce {
     #[arg(value_name = "NAME", value_parser = experiment)]
     names: Vec<&'static str>,
     /// Directory for figures, data, claims.json and report.html
-    #[arg(long, value_name = "DIR", default_value = "results")]
+    #[arg(long, value_name = "DIR", default_value = RESULTS)]
     out: PathBuf,
 }
 
@@ -27,12 +30,6 @@ fn experiment(name: &str) -> Result<&'static str, String> {
         let known: Vec<&str> = EXPERIMENTS.iter().map(|experiment| experiment.name).collect();
         format!("no such experiment, expected one of: {}", known.join(", "))
     })
-}
-
-impl Default for Reproduce {
-    fn default() -> Self {
-        Self { names: Vec::new(), out: "results".into() }
-    }
 }
 
 impl Reproduce {

@@ -224,11 +224,7 @@ impl Filter {
     #[inline]
     fn step(&mut self, settings: &KalmanSettings, voltage: f64, effect: ForceEffect, slope: ForceEffect) {
         let KalmanSettings { sample_time, flux_noise, .. } = *settings;
-        self.state = State {
-            position: self.state.position + sample_time * self.state.velocity + effect.position,
-            velocity: self.state.velocity + effect.velocity,
-            flux: self.state.flux + voltage * sample_time,
-        };
+        self.state = self.state.after(effect, voltage, sample_time);
         self.covariance.advance(slope, sample_time);
         self.covariance.add_flux_noise(flux_noise * flux_noise);
     }

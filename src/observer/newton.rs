@@ -5,7 +5,7 @@
 
 use super::largest_magnitude;
 use super::square_window::{Solution, Window};
-use crate::plant::magnetic_bearing::{ForceEffect, MagneticBearing, Map, State};
+use crate::plant::magnetic_bearing::{MagneticBearing, Map, State};
 
 pub use super::Estimate;
 
@@ -69,8 +69,8 @@ impl NewtonObserver {
                 window.solve_by_shorter_steps(settings, self.retarded)
             };
         // Steps 7 and 8 of the paper's algorithm: forward once for the next start, twice for the estimate.
-        let next = forward(oldest, effects[0], window.voltages[0], settings.sample_time);
-        let state = forward(next, effects[1], window.voltages[1], settings.sample_time);
+        let next = oldest.after(effects[0], window.voltages[0], settings.sample_time);
+        let state = next.after(effects[1], window.voltages[1], settings.sample_time);
         // What is not finite in `next` is not finite in `state` either.
         if !state.is_finite() {
             return Estimate {
@@ -98,15 +98,5 @@ impl NewtonObserver {
         self.samples += 1;
         self.estimate.position = position;
         Estimate { state: self.estimate, residual: 0.0, iterations: 0, converged: false }
-    }
-}
-
-/// F(x, u) with a known force effect.
-#[inline]
-fn forward(state: State, effect: ForceEffect, voltage: f64, sample_time: f64) -> State {
-    State {
-        position: state.position + sample_time * state.velocity + effect.position,
-        velocity: state.velocity + effect.velocity,
-        flux: state.flux + voltage * sample_time,
     }
 }

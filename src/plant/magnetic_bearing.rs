@@ -27,6 +27,16 @@ pub struct State {
 }
 
 impl State {
+    /// The state after `duration` \[s\] under a held `voltage` \[V\], given what the force adds over it.
+    #[inline]
+    pub fn after(self, effect: ForceEffect, voltage: f64, duration: f64) -> Self {
+        Self {
+            position: self.position + duration * self.velocity + effect.position,
+            velocity: self.velocity + effect.velocity,
+            flux: self.flux + voltage * duration,
+        }
+    }
+
     /// Whether no component is infinite or NaN.
     pub fn is_finite(&self) -> bool {
         self.position.is_finite() && self.velocity.is_finite() && self.flux.is_finite()
@@ -71,12 +81,7 @@ impl MagneticBearing {
     /// The state after `duration` \[s\] under a held `voltage` \[V\].
     #[inline]
     pub fn advance(&self, map: Map, state: State, voltage: f64, duration: f64) -> State {
-        let effect = self.force_effect(map, state.flux, voltage, duration);
-        State {
-            position: state.position + duration * state.velocity + effect.position,
-            velocity: state.velocity + effect.velocity,
-            flux: state.flux + voltage * duration,
-        }
+        state.after(self.force_effect(map, state.flux, voltage, duration), voltage, duration)
     }
 
     /// Force effect over a step that starts with `flux` \[Wb\].

@@ -26,7 +26,7 @@ pub fn write(directory: &Path, findings: &[Findings]) -> Result<PathBuf, StudyEr
             let file = |extension: &str| directory.join(format!("{}.{extension}", figure.name));
             write_file(&file("svg"), svg.as_bytes())?;
             write_file(&file("png"), &chart::png(&figure.figure, &svg)?)?;
-            write_file(&file("csv"), &csv(&figure.table))?;
+            write_file(&file("csv"), &csv(&figure.table)?)?;
             pictures.push(svg);
         }
     }
@@ -40,19 +40,16 @@ pub fn write(directory: &Path, findings: &[Findings]) -> Result<PathBuf, StudyEr
     Ok(path)
 }
 
-/// Shortest decimal numbers that read back to the same bits.
-fn csv(table: &Table) -> Vec<u8> {
-    let mut text = table.headers.join(",");
+/// Shortest decimal numbers that read back to the same bits; headers with commas are quoted.
+fn csv(table: &Table) -> Result<Vec<u8>, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(&table.headers)?;
     let rows = table.columns.first().map_or(0, Vec::len);
     for row in 0..rows {
-        text.push('\n');
-        for (place, column) in table.columns.iter().enumerate() {
-            let separator = if place == 0 { "" } else { "," };
-            text.push_str(&format!("{separator}{:e}", column[row]));
-        }
+        writer.write_record(table.columns.iter().map(|column| format!("{:e}", column[row])))?;
     }
-    text.push('\n');
-    text.into_bytes()
+    // Writing to memory cannot fail.
+    Ok(writer.into_inner().unwrap_or_default())
 }
 
 fn write_file(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
