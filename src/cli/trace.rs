@@ -3,66 +3,94 @@
 use std::error::Error;
 
 use clap::Args;
-use maglev_fmu::unit::variable::{Kind, Variable};
-use maglev_fmu::unit::{MagneticBearingController, MagneticBearingPlant, Silence, Unit};
+use maglev_fmu::unit::system::{SYSTEMS, System};
+use maglev_fmu::unit::variable::{Causality, Kind, Variable};
+use maglev_fmu::unit::{Silence, Unit};
 
 use super::say;
 
-/// Time per step \[s\].
-const STEP_SIZE: f64 = 1e-3;
-const PLANT: [&str; 3] = ["position", "velocity", "flux"];
-const CONTROLLER: [&str; 4] = ["voltage", "estimate.position", "estimate.velocity", "estimate.flux"];
-/// Outputs of the plant and the controller's inputs they go to.
-const WIRES: [(&str, &str); 4] = [
-    ("position_measured", "position"),
-    ("velocity", "state.velocity"),
-    ("flux", "state.flux"),
-    ("voltage_measured", "voltage_applied"),
-];
-
-/// Run the bearing loop without FMI and print every bit, to compare an importer with
+/// Run a system without FMI and print every bit, to compare an importer with
 ///
-/// Controller first, steps of 1 ms. A line per step: position, velocity and flux before the step, then voltage and
-/// estimates of the tick, each as the 16 hexadecimal digits of its bits.
+/// Controller first. A header, then a line per step: all real outputs of the plant before the step, then all real
+/// outputs of the controller after its tick, each as the 16 hexadecimal digits of its bits.
 #[derive(Debug, Args)]
 pub struct Trace {
+    #[arg(value_name = "SYSTEM", default_value = "bearing", value_parser = system)]
+    system: &'static System,
     #[arg(long, value_name = "N", default_value_t = 1000)]
     steps: u32,
-    /// Parameter of the plant, with an enumeration's item by name; may be repeated
+    /// Communication step in s; the controller's sample time if not given
+    #[arg(long, value_name = "S")]
+    step_size: Option<f64>,
+    /// Parameter or input of the plant, with an enumeration's item by name; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     plant: Vec<String>,
-    /// Parameter of the controller; may be repeated
+    /// Parameter or input of the controller; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     controller: Vec<String>,
 }
 
+fn system(name: &str) -> Result<&'static System, String> {
+    System::find(name).ok_or_else(|| {
+        let known: Vec<&str> = SYSTEMS.iter().map(|system| system.name).collect();
+        format!("no such system, expected one of: {}", known.join(", "))
+    })
+}
+
 impl Trace {
     pub fn run(&self) -> Result<(), Box<dyn Error>> {
-        let (mut plant, mut controller) = (MagneticBearingPlant::new(), MagneticBearingController::new());
-        self.plant.iter().try_for_each(|assignment| assign(&mut plant, assignment))?;
-        self.controller.iter().try_for_each(|assignment| assign(&mut controller, assignment))?;
+        let (mut plant, mut controller) = ((self.system.plant.create)(), (self.system.controller.create)());
+        self.plant.iter().try_for_each(|assignment| assign(&mut *plant, assignment))?;
+        self.controller.iter().try_for_each(|assignment| assign(&mut *controller, assignment))?;
         plant.initialise(0.0)?;
         controller.initialise(0.0)?;
+        let step_size = self.step_size.unwrap_or_else(|| *value(&mut *controller, "sample_time"));
+        let (plant_outputs, controller_outputs) = (real_outputs(&*plant), real_outputs(&*controller));
+        say(format_args!(
+            "{}",
+            [header("plant", &plant_outputs), header("controller", &controller_outputs)].join(",")
+        ));
         for _ in 0..self.steps {
-            let state = PLANT.map(|name| *value(&mut plant, name));
-            for (output, input) in WIRES {
-                *value(&mut controller, input) = *value(&mut plant, output);
-            }
-            controller.advance(STEP_SIZE, &mut Silence)?;
-            let outputs = CONTROLLER.map(|name| *value(&mut controller, name));
-            *value(&mut plant, "voltage") = outputs[0];
-            plant.advance(STEP_SIZE, &mut Silence)?;
-            let bits: Vec<String> =
-                state.iter().chain(&outputs).map(|value| format!("{:016x}", value.to_bits())).collect();
-            say(format_args!("{}", bits.join(",")));
+            let mut row = bits(&*plant, &plant_outputs);
+            pass_on(&mut *plant, &mut *controller, self.system.sensing);
+            controller.advance(step_size, &mut Silence)?;
+            row.extend(bits(&*controller, &controller_outputs));
+            pass_on(&mut *controller, &mut *plant, self.system.actuation);
+            plant.advance(step_size, &mut Silence)?;
+            say(format_args!("{}", row.join(",")));
         }
         Ok(())
     }
 }
 
+/// Names of all real outputs, in the order of the table.
+fn real_outputs(unit: &dyn Unit) -> Vec<&'static str> {
+    let is_real_output =
+        |row: &&Variable| row.causality == Causality::Output && matches!(row.kind, Kind::Real(_));
+    unit.description().variables.iter().filter(is_real_output).map(|row| row.name).collect()
+}
+
+fn header(unit: &str, names: &[&str]) -> String {
+    names.iter().map(|name| format!("{unit}.{name}")).collect::<Vec<_>>().join(",")
+}
+
+fn bits(unit: &dyn Unit, names: &[&str]) -> Vec<String> {
+    let value = |name: &&str| {
+        let (reference, _) = unit.description().find(name).expect("a name from the table");
+        format!("{:016x}", unit.values()[reference].to_bits())
+    };
+    names.iter().map(value).collect()
+}
+
+fn pass_on(source: &mut dyn Unit, target: &mut dyn Unit, wires: &[(&str, &str)]) {
+    for (output, input) in wires {
+        *value(target, input) = *value(source, output);
+    }
+}
+
 /// The value of a variable that the unit's table has.
 fn value<'a>(unit: &'a mut dyn Unit, name: &str) -> &'a mut f64 {
-    let (reference, _) = unit.description().find(name).expect("a name of this file");
+    let (reference, _) = unit.description().find(name).expect("a name from the table");
     &mut unit.values_mut()[reference]
 }
 

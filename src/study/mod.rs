@@ -4,11 +4,11 @@
 //! that is written to disk goes through [`output`].
 
 pub mod bearing;
-mod bearing_loop;
 pub mod bearing_observers;
 pub mod chart;
 pub mod claim;
 mod error;
+mod loop_packages;
 pub mod output;
 pub mod report;
 

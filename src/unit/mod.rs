@@ -7,6 +7,7 @@ mod magnetic_bearing_controller;
 mod magnetic_bearing_plant;
 pub mod quantity;
 pub mod sample_clock;
+pub mod system;
 pub mod value;
 pub mod variable;
 
@@ -15,6 +16,7 @@ use core::fmt;
 pub use description::{Description, Token};
 pub use magnetic_bearing_controller::MagneticBearingController;
 pub use magnetic_bearing_plant::MagneticBearingPlant;
+pub use system::System;
 use thiserror::Error;
 
 /// Kinds of remarks a unit makes while it runs.
@@ -82,22 +84,23 @@ pub trait Unit: Send {
 pub const TIME: usize = 0;
 
 /// A unit that can be made from nothing but its table.
+#[derive(Debug)]
 pub struct UnitType {
     pub description: &'static Description,
     pub create: fn() -> Box<dyn Unit>,
 }
 
+pub static MAGNETIC_BEARING_PLANT: UnitType = UnitType {
+    description: &magnetic_bearing_plant::DESCRIPTION,
+    create: || Box::new(MagneticBearingPlant::new()),
+};
+pub static MAGNETIC_BEARING_CONTROLLER: UnitType = UnitType {
+    description: &magnetic_bearing_controller::DESCRIPTION,
+    create: || Box::new(MagneticBearingController::new()),
+};
+
 /// All units the shared library offers.
-pub static UNITS: &[UnitType] = &[
-    UnitType {
-        description: &magnetic_bearing_plant::DESCRIPTION,
-        create: || Box::new(MagneticBearingPlant::new()),
-    },
-    UnitType {
-        description: &magnetic_bearing_controller::DESCRIPTION,
-        create: || Box::new(MagneticBearingController::new()),
-    },
-];
+pub static UNITS: &[&UnitType] = &[&MAGNETIC_BEARING_PLANT, &MAGNETIC_BEARING_CONTROLLER];
 
 /// Start values of a table.
 fn start_values<const N: usize>(variables: &[variable::Variable; N]) -> [f64; N] {
@@ -139,6 +142,10 @@ mod tests {
 
     #[test]
     fn tokens_differ() {
-        assert_ne!(UNITS[0].description.token(), UNITS[1].description.token());
+        for (index, unit) in UNITS.iter().enumerate() {
+            for other in &UNITS[..index] {
+                assert_ne!(unit.description.token(), other.description.token());
+            }
+        }
     }
 }

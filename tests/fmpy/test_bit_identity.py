@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from bearing import Loop, bits
+from bearing import CONTROLLER_OUTPUTS, STATE, Loop, bits
 from cosimulation import Value
 from packages import FMI_VERSIONS, REPOSITORY
 
@@ -41,12 +41,13 @@ def native_trajectory(controller: dict[str, Value], steps: int) -> Trajectory:
     One row per sample, as `Loop.step` returns them: at the tick's time position, velocity, flux, and as of the tick
     voltage, estimate.position, estimate.velocity, estimate.flux.
     """
-    command: list[str | Path] = [executable(), "trace", "--steps", str(steps)]
+    command: list[str | Path] = [executable(), "trace", "bearing", "--steps", str(steps)]
     for name, value in controller.items():
         text = str(value).lower() if isinstance(value, bool) else str(value)
         command += ["--controller", f"{name}={text}"]
     output = subprocess.run(command, check=True, capture_output=True, text=True).stdout
-    return [tuple(int(field, 16) for field in row) for row in csv.reader(output.splitlines())]
+    columns = [f"plant.{name}" for name in STATE] + [f"controller.{name}" for name in CONTROLLER_OUTPUTS]
+    return [tuple(int(row[column], 16) for column in columns) for row in csv.DictReader(output.splitlines())]
 
 
 @pytest.mark.parametrize("controller", CONTROLLERS.values(), ids=CONTROLLERS.keys())

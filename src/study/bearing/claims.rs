@@ -4,8 +4,8 @@ use super::scenario::{Run, Scenario, largest, simulate};
 use super::{BIAS_FLUXES, LAWS, POSITIONS, Runs, SAMPLE_TIME, SIMULATION_TIME, VOLTAGES};
 use crate::host::Value;
 use crate::study::StudyError;
-use crate::study::bearing_loop::BearingPackages;
 use crate::study::claim::{Claim, Measurement, Verdict};
+use crate::study::loop_packages::LoopPackages;
 
 /// Share of a signal's peak up to which an error counts as zero in a figure.
 const VISIBLE: f64 = 0.01;
@@ -13,7 +13,7 @@ const VISIBLE: f64 = 0.01;
 const CONVERGENCE_TIME: f64 = 0.05;
 const STATE_NAMES: [&str; 3] = ["position", "velocity", "flux"];
 
-pub fn all(packages: &BearingPackages, runs: &Runs) -> Result<Vec<Claim>, StudyError> {
+pub fn all(packages: &LoopPackages, runs: &Runs) -> Result<Vec<Claim>, StudyError> {
     Ok(vec![
         convergence(
             "observer_converges_within_50_ms",
@@ -260,7 +260,7 @@ fn settling(runs: &Runs) -> Claim {
 }
 
 /// One step of the plant across a flux zero crossing, by both maps.
-fn exactness(packages: &BearingPackages) -> Result<Claim, StudyError> {
+fn exactness(packages: &LoopPackages) -> Result<Claim, StudyError> {
     let step = |map: &str| -> Result<f64, StudyError> {
         let mut plant = packages.plant(&[
             ("map", Value::Text(map)),
@@ -307,7 +307,7 @@ fn table_1() -> Claim {
     }
 }
 
-fn global_stability(packages: &BearingPackages) -> Result<Claim, StudyError> {
+fn global_stability(packages: &LoopPackages) -> Result<Claim, StudyError> {
     let duration = 400.0;
     let run = simulate(packages, &Scenario::new(0.01, -150.0), duration)?;
     // Peak of the displacement over the last period of the slow oscillation.

@@ -9,8 +9,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use super::bearing_loop::BearingPackages;
+use super::loop_packages::LoopPackages;
 use super::{Findings, Progress, StudyError};
+use crate::unit::system::BEARING;
 use scenario::{Feedback, Run, Scenario, simulate};
 
 /// Simulation time of Table 1 \[s\].
@@ -38,7 +39,7 @@ const PROVENANCE: &[&str] = &[
 /// Runs everything through the packages in `packages`.
 pub fn run(packages: &Path, progress: Progress<'_>) -> Result<Findings, StudyError> {
     progress(0.0, "bearing: opening the packages");
-    let packages = BearingPackages::open(packages)?;
+    let packages = LoopPackages::open(packages, &BEARING)?;
     let runs = Runs::simulate(&packages, progress)?;
     Ok(Findings {
         name: "bearing",
@@ -64,7 +65,7 @@ struct Runs {
 }
 
 impl Runs {
-    fn simulate(packages: &BearingPackages, progress: Progress<'_>) -> Result<Self, StudyError> {
+    fn simulate(packages: &LoopPackages, progress: Progress<'_>) -> Result<Self, StudyError> {
         let mut scenarios = Vec::new();
         for law in LAWS {
             for position in POSITIONS {

@@ -3,7 +3,7 @@
 use super::SAMPLE_TIME;
 use crate::host::Value;
 use crate::study::StudyError;
-use crate::study::bearing_loop::BearingPackages;
+use crate::study::loop_packages::LoopPackages;
 
 /// What the law is fed with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -107,7 +107,7 @@ const RECORDED: [(&str, &str); 7] = [
 ];
 
 /// Runs a scenario for `duration` \[s\].
-pub fn simulate(packages: &BearingPackages, scenario: &Scenario, duration: f64) -> Result<Run, StudyError> {
+pub fn simulate(packages: &LoopPackages, scenario: &Scenario, duration: f64) -> Result<Run, StudyError> {
     let feedback = match scenario.feedback {
         Feedback::Estimate => "estimate",
         Feedback::State => "state",

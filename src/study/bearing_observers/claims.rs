@@ -6,14 +6,14 @@ use super::presentation::index_of;
 use super::{INITIAL_FLUX, NOISES, SAMPLE_TIMES};
 use crate::host::Value;
 use crate::study::StudyError;
-use crate::study::bearing_loop::{BearingPackages, Parameter};
 use crate::study::claim::{Claim, Measurement, Verdict};
+use crate::study::loop_packages::{LoopPackages, Parameter};
 
 /// Largest flux in the runs \[Wb\].
 const SIGNAL: f64 = 0.15;
 const SEEDS: i32 = 10;
 
-pub fn all(packages: &BearingPackages, comparison: &Comparison) -> Result<Vec<Claim>, StudyError> {
+pub fn all(packages: &LoopPackages, comparison: &Comparison) -> Result<Vec<Claim>, StudyError> {
     Ok(vec![
         reduced_observer(packages)?,
         step_size(packages)?,
@@ -24,11 +24,7 @@ pub fn all(packages: &BearingPackages, comparison: &Comparison) -> Result<Vec<Cl
 
 /// Root mean square flux error \[Wb\] over all seeds, T = 1 ms, true state fed back, observer started right: what noise
 /// does is not to be mixed up with convergence from afar.
-fn flux_error(
-    packages: &BearingPackages,
-    noise: f64,
-    parameters: &[Parameter<'_>],
-) -> Result<f64, StudyError> {
+fn flux_error(packages: &LoopPackages, noise: f64, parameters: &[Parameter<'_>]) -> Result<f64, StudyError> {
     let seeds = if noise > 0.0 { SEEDS } else { 1 };
     let mut sum = 0.0;
     for seed in 0..seeds {
@@ -41,7 +37,7 @@ fn flux_error(
     Ok((sum / f64::from(seeds)).sqrt())
 }
 
-fn reduced_observer(packages: &BearingPackages) -> Result<Claim, StudyError> {
+fn reduced_observer(packages: &LoopPackages) -> Result<Claim, StudyError> {
     let times = [1e-4, 1e-3, 1e-2];
     let mut measured = Vec::new();
     for (kind, name) in [("reduced_newton", "printed"), ("reduced_newton_compensated", "lag compensated")] {
@@ -75,7 +71,7 @@ fn reduced_observer(packages: &BearingPackages) -> Result<Claim, StudyError> {
     })
 }
 
-fn step_size(packages: &BearingPackages) -> Result<Claim, StudyError> {
+fn step_size(packages: &LoopPackages) -> Result<Claim, StudyError> {
     let noise = 1e-9;
     let mut measured = Vec::new();
     for alpha in [1.0, 0.5, 0.2, 0.1] {
@@ -99,7 +95,7 @@ fn step_size(packages: &BearingPackages) -> Result<Claim, StudyError> {
     })
 }
 
-fn iterations(packages: &BearingPackages) -> Result<Claim, StudyError> {
+fn iterations(packages: &LoopPackages) -> Result<Claim, StudyError> {
     let noise = 1e-9;
     let mut measured = Vec::new();
     for d in [1, 3, 10, 100] {

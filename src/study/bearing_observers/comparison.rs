@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::bound::{Bound, cramer_rao};
 use super::contenders::{CONTENDERS, Conditions, rms_error, simulate, stayed_up};
 use super::{NOISES, SAMPLE_TIMES, seeds};
-use crate::study::bearing_loop::BearingPackages;
+use crate::study::loop_packages::LoopPackages;
 use crate::study::{Progress, StudyError};
 
 /// One observer under one sample time and noise, over all seeds.
@@ -38,7 +38,7 @@ struct Sums {
 }
 
 impl Comparison {
-    pub fn simulate(packages: &BearingPackages, progress: Progress<'_>) -> Result<Self, StudyError> {
+    pub fn simulate(packages: &LoopPackages, progress: Progress<'_>) -> Result<Self, StudyError> {
         let cases: Vec<(usize, usize, usize, i32)> = (0..SAMPLE_TIMES.len())
             .flat_map(|time| (0..seeds(SAMPLE_TIMES[time])).map(move |seed| (time, seed)))
             .flat_map(|(time, seed)| (0..NOISES.len()).map(move |noise| (time, noise, seed)))
@@ -87,7 +87,7 @@ impl Sums {
 
 /// One seed: errors on common data, then the loop on estimates.
 fn score(
-    packages: &BearingPackages,
+    packages: &LoopPackages,
     sample_time: f64,
     noise: f64,
     who: usize,
@@ -109,7 +109,7 @@ fn score(
 }
 
 /// The bound along the trajectory of the first seed; trajectories of other seeds hardly differ.
-fn bound(packages: &BearingPackages, sample_time: f64, noise: f64) -> Result<Bound, StudyError> {
+fn bound(packages: &LoopPackages, sample_time: f64, noise: f64) -> Result<Bound, StudyError> {
     let trace = simulate(packages, Conditions { sample_time, noise, seed: 0, feedback: "state" }, &[])?;
     Ok(cramer_rao(&trace, sample_time, noise))
 }

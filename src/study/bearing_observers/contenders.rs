@@ -3,7 +3,7 @@
 use super::{DURATION, INITIAL_FLUX, LOST_BEYOND, SCORED_FROM};
 use crate::host::{Trace, Value};
 use crate::study::StudyError;
-use crate::study::bearing_loop::{BearingPackages, Parameter};
+use crate::study::loop_packages::{LoopPackages, Parameter};
 
 /// An observer with its parameters of the controller unit.
 pub struct Contender {
@@ -62,7 +62,7 @@ pub struct Conditions {
 
 /// A run with the sensor in the loop; `parameters` go to the controller.
 pub fn simulate(
-    packages: &BearingPackages,
+    packages: &LoopPackages,
     conditions: Conditions,
     parameters: &[Parameter<'_>],
 ) -> Result<Trace, StudyError> {

@@ -9,8 +9,9 @@ mod settling;
 
 use std::path::Path;
 
-use super::bearing_loop::BearingPackages;
+use super::loop_packages::LoopPackages;
 use super::{Findings, Progress, StudyError};
+use crate::unit::system::BEARING;
 use comparison::Comparison;
 
 /// Standard deviations of the position sensor \[m\].
@@ -42,7 +43,7 @@ const PROVENANCE: &[&str] = &[
 
 /// Runs everything through the packages in `packages`.
 pub fn run(packages: &Path, progress: Progress<'_>) -> Result<Findings, StudyError> {
-    let packages = BearingPackages::open(packages)?;
+    let packages = LoopPackages::open(packages, &BEARING)?;
     let comparison = Comparison::simulate(&packages, progress)?;
     progress(0.97, "bearing-observers: laws that settle");
     let (settling_figure, settling_table) = settling::compare(&packages)?;

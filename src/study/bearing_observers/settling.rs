@@ -1,8 +1,8 @@
 //! How fast the laws bring the rotor to the centre: the printed law (8a) against the flux cascade, on estimates.
 
 use crate::host::{Trace, Value};
-use crate::study::bearing_loop::{BearingPackages, Parameter};
 use crate::study::chart::{Figure, Panel, Series, Stroke};
+use crate::study::loop_packages::{LoopPackages, Parameter};
 use crate::study::report::quantity;
 use crate::study::{FigureWithData, StudyError, Summary, Table};
 
@@ -64,7 +64,7 @@ struct Outcome {
 }
 
 /// The figure and the table.
-pub fn compare(packages: &BearingPackages) -> Result<(FigureWithData, Summary), StudyError> {
+pub fn compare(packages: &LoopPackages) -> Result<(FigureWithData, Summary), StudyError> {
     let mut position = Panel::new("position, x1(0) = 10 mm, u(0) = -150 V", "time [s]", "position x1 [mm]");
     let mut distance = Panel::new("distance from the centre", "time [s]", "|x1| [mm]").logarithmic();
     let mut voltage = Panel::new("voltage, first 0.2 s", "time [s]", "voltage u [V]").between(0.0, 0.2);
@@ -121,7 +121,7 @@ pub fn compare(packages: &BearingPackages) -> Result<(FigureWithData, Summary), 
     Ok((FigureWithData { name: "bearing_flux_cascade".to_owned(), figure, table }, summary))
 }
 
-fn worst(packages: &BearingPackages, setting: &Setting) -> Result<Outcome, StudyError> {
+fn worst(packages: &LoopPackages, setting: &Setting) -> Result<Outcome, StudyError> {
     let mut worst = Outcome { settling_time: 0.0, rest: 0.0, voltage: 0.0 };
     for position in POSITIONS {
         for voltage in VOLTAGES {
@@ -153,7 +153,7 @@ fn judge(trace: &Trace) -> Outcome {
 }
 
 fn simulate(
-    packages: &BearingPackages,
+    packages: &LoopPackages,
     setting: &Setting,
     initial_position: f64,
     initial_voltage: f64,

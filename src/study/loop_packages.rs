@@ -1,0 +1,77 @@
+//! The two packages of a system, and their loop as every experiment runs it.
+
+use std::path::Path;
+
+use super::StudyError;
+use crate::fmi::FmiVersion;
+use crate::host::{ExchangeOrder, Fmu, HostError, Instance, Logging, Trace, TwoUnitLoop, Value};
+use crate::unit::{System, UnitType};
+
+/// Variable and value.
+pub type Parameter<'a> = (&'a str, Value<'a>);
+
+/// Plant and controller, loaded.
+pub struct LoopPackages {
+    system: &'static System,
+    plant: Fmu,
+    controller: Fmu,
+}
+
+impl LoopPackages {
+    /// Opens the system's FMI 3.0 packages below `packages`.
+    pub fn open(packages: &Path, system: &'static System) -> Result<Self, HostError> {
+        let open = |unit: &UnitType| {
+            let folder = packages.join(FmiVersion::Three.directory());
+            Fmu::open(&folder.join(unit.description.name).with_extension("fmu"))
+        };
+        Ok(Self { system, plant: open(system.plant)?, controller: open(system.controller)? })
+    }
+
+    /// A plant with parameters, to be initialised.
+    pub fn plant(&self, parameters: &[Parameter<'_>]) -> Result<Instance, HostError> {
+        with_parameters(&self.plant, "plant", parameters)
+    }
+
+    /// Runs the loop, controller first, for `duration` \[s\] with a tick every `sample_time` \[s\]; the last row is at the
+    /// end.
+    pub fn simulate(
+        &self,
+        plant: &[Parameter<'_>],
+        controller: &[Parameter<'_>],
+        record: &[(&str, &str)],
+        sample_time: f64,
+        duration: f64,
+    ) -> Result<Trace, StudyError> {
+        self.simulate_with(plant, controller, record, sample_time, duration, |_, _, _| Ok(()))
+    }
+
+    /// As [`LoopPackages::simulate`], with a `stimulus(time, controller, plant)` before every step: the place to move a
+    /// reference or to push the plant.
+    pub fn simulate_with(
+        &self,
+        plant: &[Parameter<'_>],
+        controller: &[Parameter<'_>],
+        record: &[(&str, &str)],
+        sample_time: f64,
+        duration: f64,
+        stimulus: impl FnMut(f64, &mut Instance, &mut Instance) -> Result<(), HostError>,
+    ) -> Result<Trace, StudyError> {
+        let plant = self.plant(plant)?;
+        let mut controller = with_parameters(&self.controller, "controller", controller)?;
+        controller.set_by_name("sample_time", sample_time)?;
+        let System { sensing, actuation, .. } = self.system;
+        let mut control_loop =
+            TwoUnitLoop::connect(controller, plant, ExchangeOrder::ControllerFirst, sensing, actuation)?;
+        control_loop.record(record)?;
+        control_loop.initialise(0.0, Some(duration), sample_time)?;
+        Ok(control_loop.run_with((duration / sample_time).round() as usize + 1, stimulus)?)
+    }
+}
+
+fn with_parameters(fmu: &Fmu, name: &str, parameters: &[Parameter<'_>]) -> Result<Instance, HostError> {
+    let mut instance = fmu.instantiate(name, Logging::Off)?;
+    for (parameter, value) in parameters {
+        instance.set_by_name(parameter, *value)?;
+    }
+    Ok(instance)
+}
