@@ -297,7 +297,8 @@ impl BallObserver {
         let excitation = self.advance(self.normalised(current), voltage / self.constants.flux);
         let memory = &self.memory;
         let residual = self.residual();
-        let sum = residual + memory.velocity(self.settings.speed_rate) + memory.gap + memory.learnt + excitation;
+        let sum =
+            residual + memory.velocity(self.settings.speed_rate) + memory.gap + memory.learnt + excitation;
         if sum.is_finite() {
             return self.estimate(excitation, residual);
         }
