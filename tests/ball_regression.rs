@@ -89,7 +89,7 @@ fn a_wrong_offset_leaves_a_residual() {
 fn both_forms_of_the_mixing_have_the_same_determinants() {
     let mut compared = 0;
     run(0.6e-3, 1e-4, 2.0, |time, regression, mixing| {
-        if time < 0.5 || (time * 1e4).round() as u32 % 100 != 0 {
+        if time < 0.5 || !((time * 1e4).round() as u32).is_multiple_of(100) {
             return;
         }
         let coefficients = regression.coefficients(&settings());
