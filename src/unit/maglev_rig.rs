@@ -1,10 +1,10 @@
 //! What plant and controller of the maglev rig share: quantities, sensor and limits of the voltage.
 
+use super::quantity::{AMPERE, NEWTON_SQUARE_METRE_PER_SQUARE_AMPERE};
 use super::quantity::{
     AMPERE_PER_VOLT, KILOGRAM, METRE, METRE_PER_SECOND, METRE_PER_SECOND_SQUARED, NEWTON, ONE, PER_SECOND,
     PER_SECOND_CUBED, PER_SECOND_SQUARED, Quantity, VOLT, VOLT_PER_METRE,
 };
-use super::quantity::{AMPERE, NEWTON_SQUARE_METRE_PER_SQUARE_AMPERE};
 use super::variable::{Kind, Variable};
 use crate::plant::maglev_rig::PositionSensor;
 
@@ -26,8 +26,12 @@ pub static BALL_ACCELERATION: Quantity = Quantity {
     unit: &METRE_PER_SECOND_SQUARED,
     nominal: 10.0,
 };
-pub static DRIVER_VOLTAGE: Quantity =
-    Quantity { name: "DriverVoltage", description: "Voltage at the coil's driver", unit: &VOLT, nominal: 1.0 };
+pub static DRIVER_VOLTAGE: Quantity = Quantity {
+    name: "DriverVoltage",
+    description: "Voltage at the coil's driver",
+    unit: &VOLT,
+    nominal: 1.0,
+};
 pub static SENSOR_VOLTAGE: Quantity = Quantity {
     name: "SensorVoltage",
     description: "Voltage of the position sensor, the larger the lower the ball",
@@ -150,9 +154,9 @@ pub const fn sensor_offset() -> Variable {
 
 /// Smallest voltage: the driver does not push, so that 0 is where its force ends.
 pub const fn voltage_min(name: &'static str) -> Variable {
-    Variable::tunable(name, Kind::Real(&DRIVER_VOLTAGE), 0.0)
-        .range(-100.0, 0.0)
-        .describe("Smallest voltage; negative ones attract as positive ones do, as the force goes with the square")
+    Variable::tunable(name, Kind::Real(&DRIVER_VOLTAGE), 0.0).range(-100.0, 0.0).describe(
+        "Smallest voltage; negative ones attract as positive ones do, as the force goes with the square",
+    )
 }
 
 pub const fn voltage_max(name: &'static str) -> Variable {

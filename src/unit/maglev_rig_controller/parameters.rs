@@ -6,9 +6,7 @@ use crate::controller::disturbance_rejection::DisturbanceRejection;
 use crate::observer::extended_state::{
     ExtendedState, LinearInjection, NonlinearInjection, gains_from_bandwidth,
 };
-use crate::observer::sampled_extended_state::{
-    Discretisation, ExtendedStateSettings, Form, InjectionChoice,
-};
+use crate::observer::sampled_extended_state::{Discretisation, ExtendedStateSettings, Form, InjectionChoice};
 use crate::plant::maglev_rig::PositionSensor;
 
 pub(super) fn observer_settings(values: &[f64; COUNT]) -> ExtendedStateSettings {

@@ -2,10 +2,11 @@
 
 use crate::unit::Description;
 use crate::unit::maglev_rig::{
-    BALL_ACCELERATION, BALL_DISTANCE, BALL_VELOCITY, BANDWIDTH, DRIVER_VOLTAGE, FIRST_OBSERVER_GAIN, INPUT_GAIN,
-    OBSERVED_ACCELERATION, OBSERVED_INPUT_GAIN, OBSERVED_POSITION, OBSERVED_VELOCITY, OPERATING_SENSOR_VOLTAGE,
-    OPERATING_VOLTAGE, SECOND_OBSERVER_GAIN, SENSOR_VOLTAGE as SENSOR_VOLTAGE_QUANTITY, THIRD_OBSERVER_GAIN,
-    sensor_gain, sensor_offset, voltage_max, voltage_min,
+    BALL_ACCELERATION, BALL_DISTANCE, BALL_VELOCITY, BANDWIDTH, DRIVER_VOLTAGE, FIRST_OBSERVER_GAIN,
+    INPUT_GAIN, OBSERVED_ACCELERATION, OBSERVED_INPUT_GAIN, OBSERVED_POSITION, OBSERVED_VELOCITY,
+    OPERATING_SENSOR_VOLTAGE, OPERATING_VOLTAGE, SECOND_OBSERVER_GAIN,
+    SENSOR_VOLTAGE as SENSOR_VOLTAGE_QUANTITY, THIRD_OBSERVER_GAIN, sensor_gain, sensor_offset, voltage_max,
+    voltage_min,
 };
 use crate::unit::quantity::{DURATION, Enumeration, RATE, RATIO, TIME as TIME_QUANTITY};
 use crate::unit::variable::{Kind, Variability, Variable, variable_table};
@@ -103,7 +104,10 @@ static CONTROLLER_KIND: Enumeration = Enumeration {
     description: "Control law",
     items: &[
         ("pid", "Digital PID of the sensor voltage with anti-windup"),
-        ("disturbance_rejection", "Through the extended state: what is unknown of the acceleration is cancelled"),
+        (
+            "disturbance_rejection",
+            "Through the extended state: what is unknown of the acceleration is cancelled",
+        ),
     ],
 };
 /// Number of the item `disturbance_rejection`.
