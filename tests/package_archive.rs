@@ -89,6 +89,7 @@ fn archives_hold_what_the_standards_name() {
                 "extra/org.fmi-standard.fmi-ls-ref/reference-input.csv",
                 "extra/org.fmi-standard.fmi-ls-ref/reference-output.csv",
                 "documentation/index.html",
+                "documentation/reference-run.svg",
                 "documentation/licenses/license.txt",
                 "documentation/licenses/THIRD-PARTY.txt",
                 "documentation/licenses/Apache-2.0.txt",

@@ -7,7 +7,9 @@ use super::icon::{icon_png, icon_svg};
 use super::loop_diagram::loop_diagram;
 use super::model_description::{model_description, terminals_and_icons};
 use super::plug::Plug;
+use super::reference_run::ReferenceRun;
 use super::related_files::related_files;
+use super::run_figure::run_figure;
 use super::{FmiVersion, GenerationTime, Library, PackageError, licenses};
 use crate::unit::Description;
 
@@ -27,6 +29,9 @@ impl<'a> Entry<'a> {
         Self { path, bytes, executable: false }
     }
 }
+
+/// File name of the figure of the reference run, beside the documentation's first page.
+pub const RUN_FIGURE: &str = "reference-run.svg";
 
 /// File name of the block diagram of a loop, beside the documentation's first page.
 pub fn diagram_name(system: &str) -> String {
@@ -63,7 +68,10 @@ pub fn contents<'a>(
         let path = format!("documentation/{}", diagram_name(plug.system.name));
         entries.push(Entry::document(path, owned(loop_diagram(plug.system, Some(description)))));
     }
-    let related = related_files(description)?;
+    let run =
+        ReferenceRun::of(description).map_err(|source| PackageError::ReferenceRun { unit: name, source })?;
+    entries.push(Entry::document(format!("documentation/{RUN_FIGURE}"), owned(run_figure(&run))));
+    let related = related_files(description, &run)?;
     entries.extend(related.map(|(path, text)| Entry::document(path, owned(text))));
     entries.extend(libraries.iter().map(|library| {
         let platform = library.platform();

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use quick_xml::escape::escape;
 
-use super::contents::diagram_name;
+use super::contents::{RUN_FIGURE, diagram_name};
 use super::model_description::enumerations;
 use super::plug::Plug;
 use super::related_files::{DIRECTORY, INPUT, OUTPUT};
@@ -62,6 +62,7 @@ pub fn documentation(description: &Description, version: FmiVersion, time: Optio
 <p><a href=\"../{DIRECTORY}/{INPUT}\">{INPUT}</a> holds inputs, one row per communication point,
 <a href=\"../{DIRECTORY}/{OUTPUT}\">{OUTPUT}</a> the outputs after the initialization and after each step, with start
 values everywhere. An importer that sets each row, steps, and reads the outputs gets the same digits.</p>
+<p><img src=\"{RUN_FIGURE}\" alt=\"Inputs and outputs of the reference run\"></p>
 <h2>Provenance</h2>
 {provenance}
 </body>

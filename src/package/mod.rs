@@ -20,6 +20,7 @@ mod platform;
 mod plug;
 mod reference_run;
 mod related_files;
+mod run_figure;
 mod system_structure;
 mod variable_text;
 

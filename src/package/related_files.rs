@@ -43,9 +43,10 @@ struct Related {
 }
 
 /// Paths in the package and contents of the reference input, the reference output and their manifest.
-pub fn related_files(description: &'static Description) -> Result<[(String, String); 3], PackageError> {
-    let run = ReferenceRun::of(description)
-        .map_err(|source| PackageError::ReferenceRun { unit: description.name, source })?;
+pub fn related_files(
+    description: &'static Description,
+    run: &ReferenceRun,
+) -> Result<[(String, String); 3], PackageError> {
     let step_size = run.step_size;
     let manifest = References {
         namespace: "http://fmi-standard.org/fmi-ls-manifest",
