@@ -9,7 +9,7 @@ use crate::unit::variable::{Kind, Variable};
 /// Lengths in the picture \[pixel\].
 const WIDTH: f64 = 290.0;
 const HEIGHT: f64 = 70.0;
-const HEAD: f64 = 22.0;
+const HEAD: f64 = 36.0;
 const GAP: f64 = 18.0;
 const COLUMNS: usize = 3;
 /// Most points of a line; a point per pixel shows all there is to see.
@@ -43,7 +43,7 @@ fn panels(table: &Table, class: &'static str) -> impl Iterator<Item = String> {
         move |(column, variable)| {
             let points: Vec<(f64, f64)> =
                 table.rows.iter().map(|(time, values)| (*time, values[column])).collect();
-            panel(variable, &thinned(&points), class)
+            panel(variable, &points, class)
         },
     )
 }
@@ -58,7 +58,7 @@ fn panel(variable: &Variable, points: &[(f64, f64)], class: &str) -> String {
     let ((start, end), (low, high)) = (bounds(|point| point.0), bounds(|point| point.1));
     // A line that stands still runs through the middle.
     let (bottom, span) = if high > low { (low, high - low) } else { (low - 0.5, 1.0) };
-    let line: Vec<String> = points
+    let line: Vec<String> = thinned(points)
         .iter()
         .map(|(time, value)| {
             let x = WIDTH * (time - start) / (end - start);
@@ -67,10 +67,9 @@ fn panel(variable: &Variable, points: &[(f64, f64)], class: &str) -> String {
         })
         .collect();
     let title = format!("{} [{}]", variable.name, variable.unit());
-    let range = format!("{low:.3e} to {high:.3e}, {start:?} s to {end:?} s");
+    let range = format!("{low:.3e} to {high:.3e}; {start:?} s to {end:?} s");
     format!(
-        "<text class=\"name\" y=\"14\">{}</text>\n<text class=\"bound\" x=\"{WIDTH}\" y=\"14\" \
-         text-anchor=\"end\">{range}</text>\n<rect class=\"frame\" y=\"{HEAD}\" width=\"{WIDTH}\" \
+        "<text class=\"name\" y=\"14\">{}</text>\n<text class=\"bound\" y=\"29\">{range}</text>\n<rect class=\"frame\" y=\"{HEAD}\" width=\"{WIDTH}\" \
          height=\"{HEIGHT}\"/>\n<polyline class=\"{class}\" points=\"{}\"/>\n",
         escape(title.as_str()),
         line.join(" ")
