@@ -61,7 +61,7 @@ pub static ADAPTATION_GAIN: Quantity = Quantity {
 };
 
 /// lam0 of [`LevitatedBall::LABORATORY`] \[Wb\], a start value.
-pub const LABORATORY_FLUX: f64 = 0.010_298_006_650_608_93;
+pub const LABORATORY_FLUX: f64 = 0.010_298_006_650_609_622;
 
 pub const fn mass() -> Variable {
     Variable::parameter("mass", Kind::Real(&MASS), LevitatedBall::LABORATORY.mass)
