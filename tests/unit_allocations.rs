@@ -2,6 +2,7 @@
 
 mod ball;
 mod native;
+mod rig;
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::fmt::{self, Write};
@@ -85,6 +86,7 @@ fn steps_allocate_nothing() {
     for kind in [ball::DREM, ball::POLYNOMIAL_NEWTON, ball::POLYNOMIAL_NEWTON_ADAPTIVE] {
         ball_steps_allocate_nothing(kind, &mut Listener::default());
     }
+    rig_steps_allocate_nothing(&mut listener);
 }
 
 /// Also when the ball falls onto its stop and when the observer has to start again.
@@ -105,4 +107,39 @@ fn ball_steps_allocate_nothing(kind: f64, listener: &mut Listener) {
     run.plant.advance(1.0, listener).unwrap();
     assert_eq!(ALLOCATIONS.load(Ordering::Relaxed), before, "observer.kind {kind}");
     assert!(listener.0 > 0, "the observer started again and the ball fell");
+}
+
+/// Every observer of the rig with both laws, one of them diverging, the ball lost and found.
+fn rig_steps_allocate_nothing(listener: &mut Listener) {
+    for index in 0..48 {
+        let parameters = [
+            ("observer.kind", index % 2),
+            ("observer.discretisation", index / 2 % 4),
+            ("observer.form", index / 8 % 2),
+            ("observer.measurement", index / 16 % 2),
+            ("controller.kind", index / 32),
+        ];
+        let mut controller = parameters.map(|(name, item)| (name, f64::from(item + 1))).to_vec();
+        controller.extend([("observer.bandwidth", 3000.0), ("observer.exponent[2]", 0.7)]);
+        let mut run = rig::units::RigLoop::new(&[("sensor.noise", 1e-3)], &controller);
+        let before = (ALLOCATIONS.load(Ordering::Relaxed), listener.0);
+        for tick in 0..200 {
+            for (from, to) in
+                [("sensor_voltage_measured", "sensor_voltage"), ("voltage_measured", "voltage_applied")]
+            {
+                let value = get(&run.plant, from);
+                set(&mut run.controller, to, value);
+            }
+            if tick == 100 {
+                run.controller.adopt_parameters();
+            }
+            run.controller.advance(1e-3, listener).unwrap();
+            let voltage = get(&run.controller, "voltage");
+            set(&mut run.plant, "voltage", voltage);
+            set(&mut run.plant, "force", 5.0 * f64::from(u8::from(tick > 50)));
+            run.plant.advance(1e-3, listener).unwrap();
+        }
+        assert_eq!(ALLOCATIONS.load(Ordering::Relaxed), before.0, "{controller:?}");
+        assert!(listener.0 > before.1, "the lost ball is worth a remark");
+    }
 }

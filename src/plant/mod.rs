@@ -2,5 +2,6 @@
 
 pub mod end_stops;
 pub mod levitated_ball;
+pub mod maglev_rig;
 pub mod magnetic_bearing;
 pub mod runge_kutta;

@@ -5,6 +5,9 @@ pub mod description;
 mod levitated_ball;
 mod levitated_ball_controller;
 mod levitated_ball_plant;
+mod maglev_rig;
+mod maglev_rig_controller;
+mod maglev_rig_plant;
 mod magnetic_bearing;
 mod magnetic_bearing_controller;
 mod magnetic_bearing_plant;
@@ -20,6 +23,8 @@ use core::fmt;
 pub use description::{Description, Token};
 pub use levitated_ball_controller::LevitatedBallController;
 pub use levitated_ball_plant::LevitatedBallPlant;
+pub use maglev_rig_controller::MaglevRigController;
+pub use maglev_rig_plant::MaglevRigPlant;
 pub use magnetic_bearing_controller::MagneticBearingController;
 pub use magnetic_bearing_plant::MagneticBearingPlant;
 pub use persistence::Persistent;
@@ -126,12 +131,21 @@ pub static LEVITATED_BALL_CONTROLLER: UnitType = UnitType {
     create: || Box::new(LevitatedBallController::new()),
 };
 
+pub static MAGLEV_RIG_PLANT: UnitType =
+    UnitType { description: &maglev_rig_plant::DESCRIPTION, create: || Box::new(MaglevRigPlant::new()) };
+pub static MAGLEV_RIG_CONTROLLER: UnitType = UnitType {
+    description: &maglev_rig_controller::DESCRIPTION,
+    create: || Box::new(MaglevRigController::new()),
+};
+
 /// All units the shared library offers.
 pub static UNITS: &[&UnitType] = &[
     &MAGNETIC_BEARING_PLANT,
     &MAGNETIC_BEARING_CONTROLLER,
     &LEVITATED_BALL_PLANT,
     &LEVITATED_BALL_CONTROLLER,
+    &MAGLEV_RIG_PLANT,
+    &MAGLEV_RIG_CONTROLLER,
 ];
 
 /// Start values of a table.
