@@ -4,8 +4,10 @@
 mod literal_ball;
 
 use literal_ball::{
-    Ball, Feedback, Mixing, Motion, POLES, Reference, Regression, Settings, mixing::Scalar,
-    regression::quintic, run,
+    Ball, Feedback, Mixing, Motion, POLES, Reference, Regression, Settings,
+    mixing::{LowPasses, Scalar},
+    regression::{Coefficients, Prefilters, quintic},
+    run,
 };
 
 /// The flux offset of these runs in units of lambda_0.
@@ -84,7 +86,7 @@ fn the_swapped_equation_obeys_its_own_decay_in_any_state() {
     let regression = Regression { poles: [100.0, 300.0], squared_frequency: 1962.0 };
     for case in 0..200 {
         let number = |k: usize| scattered(20 * case + k);
-        let states = literal_ball::regression::Prefilters::from_fn(|k, _| number(k));
+        let states = Prefilters::from_fn(|k, _| number(k));
         let (z, v, theta, l) =
             (1.0 + 0.5 * number(12), 40.0 * number(13), 0.3 * number(14), 1.0 + 0.5 * number(15));
         let rates = regression.derivative(&states, l - theta, z * l);
@@ -162,27 +164,41 @@ fn mixing_leaves_one_linear_equation_in_the_offset() {
 
 #[test]
 fn four_filtered_equations_and_five_unfiltered_have_the_same_determinants() {
+    // On the trajectories the rows of the five are nearly equal, so round-off is judged where Delta is not small
+    // and Q1 against the largest Delta.
     for settings in [Settings::sinusoids(), Settings::steps()].map(watching) {
         let scalars = scalars(settings, 0.5, 4.5);
         let peak = peak(&scalars);
-        let mut worst = 0.0f64;
-        for [four, five] in scalars.iter().filter(|[four, _]| four.excitation.abs() > 0.01 * peak) {
-            worst = worst.max((five.excitation / four.excitation - 1.0).abs());
-            worst = worst.max((five.response / four.response - 1.0).abs());
+        let (mut ratio, mut response) = (0.0f64, 0.0f64);
+        for [four, five] in &scalars {
+            response = response.max((five.response - four.response).abs() / peak);
+            if four.excitation.abs() > 0.1 * peak {
+                ratio = ratio.max((five.excitation / four.excitation - 1.0).abs());
+            }
         }
-        println!("{:?}: the two forms differ by {worst:.1e}", settings.reference.waveform);
-        assert!(worst <= 1e-9, "{worst:e}");
+        println!("{:?}: Delta differs by {ratio:.1e}, Q1 by {response:.1e}", settings.reference.waveform);
+        assert!(ratio <= 1e-9 && response <= 1e-9, "{ratio:e} {response:e}");
+    }
+    // Anywhere else the identity holds to round-off.
+    let mixing = Mixing { scale: 1.0, ..Settings::sinusoids().mixing };
+    for case in 0..200 {
+        let coefficients = Coefficients::from_fn(|q, _| scattered(25 * case + q));
+        let low_passes = LowPasses::from_fn(|q, j| scattered(25 * case + 5 + 5 * j + q));
+        let four = mixing.scalar(&low_passes, &coefficients);
+        let five = mixing.scalar_of_five(&low_passes, &coefficients);
+        assert!((five.excitation - four.excitation).abs() <= 1e-13, "case {case}: {four:?} {five:?}");
+        assert!((five.response - four.response).abs() <= 1e-13, "case {case}: {four:?} {five:?}");
     }
 }
 
-/// Root mean square of Delta/kappa after a second, over four seconds.
+/// Root mean square of Delta/kappa from the first second to the fourth, three edges of the steps.
 fn excitation(settings: Settings, amplitude: f64) -> f64 {
     let settings = Settings {
         reference: Reference { amplitude, ..settings.reference },
         mixing: Mixing { scale: 1.0, ..settings.mixing },
         ..settings
     };
-    let scalars = scalars(settings, 1.0, 5.0);
+    let scalars = scalars(settings, 1.0, 4.0);
     let sum: f64 = scalars.iter().map(|[four, _]| four.excitation.powi(2)).sum();
     (sum / scalars.len() as f64).sqrt()
 }
@@ -190,10 +206,10 @@ fn excitation(settings: Settings, amplitude: f64) -> f64 {
 #[test]
 fn excitation_grows_with_the_sixth_power_of_the_amplitude() {
     let cases = [
-        (Settings::sinusoids(), [0.1e-3, 0.2e-3, 0.4e-3, 0.8e-3], 6.04),
-        (Settings::steps(), [0.25e-3, 0.5e-3, 1e-3, 2e-3], 5.92),
+        (Settings::sinusoids(), [0.1e-3, 0.2e-3, 0.4e-3, 0.8e-3]),
+        (Settings::steps(), [0.25e-3, 0.5e-3, 1e-3, 2e-3]),
     ];
-    for (settings, amplitudes, _) in cases {
+    for (settings, amplitudes) in cases {
         let points =
             amplitudes.map(|amplitude: f64| (amplitude.ln(), excitation(watching(settings), amplitude).ln()));
         let mean = |pick: fn(&(f64, f64)) -> f64| points.iter().map(pick).sum::<f64>() / points.len() as f64;
@@ -207,10 +223,10 @@ fn excitation_grows_with_the_sixth_power_of_the_amplitude() {
 
 #[test]
 fn sinusoids_excite_ten_times_as_much_as_steps() {
-    // Measured by the prototype: 1.36e-9 and 1.32e-10.
+    // Figures of the prototype: 1.36e-9 and 1.32e-10.
     let sinusoids = excitation(watching(Settings::sinusoids()), 0.6e-3);
     let steps = excitation(watching(Settings::steps()), 1e-3);
     println!("root mean square of Delta/kappa: sinusoids {sinusoids:.3e}, steps {steps:.3e}");
-    assert!((sinusoids / 1.36e-9 - 1.0).abs() <= 0.02, "{sinusoids:e}");
-    assert!((steps / 1.32e-10 - 1.0).abs() <= 0.02, "{steps:e}");
+    assert!((sinusoids / 1.36e-9 - 1.0).abs() <= 0.01, "{sinusoids:e}");
+    assert!((steps / 1.32e-10 - 1.0).abs() <= 0.01, "{steps:e}");
 }
