@@ -1,11 +1,16 @@
 //! State estimators, one per file, and what they share.
 
+pub mod ball_observer;
 mod bearing_observer;
 pub mod factored_covariance;
+pub mod flux_mixing;
+pub mod flux_regression;
 pub mod kalman;
 mod least_squares_window;
 pub mod newton;
+pub mod polynomial_newton;
 pub mod reduced_newton;
+mod saved_count;
 mod square_window;
 mod step_length;
 pub mod windowed_newton;
