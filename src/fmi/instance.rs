@@ -3,6 +3,7 @@
 use core::ffi::CStr;
 use core::fmt;
 
+use super::saved_state::Life;
 use super::{CallError, Callback, CommunicationPoint, Function, Interface, Logger, Phase};
 use crate::unit::variable::Variable;
 use crate::unit::{ContinuousRows, Journal, TIME, Topic, UNITS, Unit};
@@ -137,6 +138,27 @@ impl Instance {
         self.needs_evaluation = false;
         self.note(format_args!("reset"));
         Ok(())
+    }
+
+    /// Whether the instance can get into `phase`.
+    pub(super) fn reaches(&self, phase: Phase) -> bool {
+        self.interface.reaches(phase)
+    }
+
+    /// What a saved state has to tell besides the unit.
+    pub(super) fn life(&self) -> Life {
+        let Self { phase, communication, start_time, is_stale, .. } = *self;
+        Life { phase, communication, start_time, is_stale }
+    }
+
+    /// Goes on from a saved state; the unit has been restored.
+    pub(super) fn resume(&mut self, life: Life) {
+        let Life { phase, communication, start_time, is_stale } = life;
+        self.phase = phase;
+        self.communication = communication;
+        self.start_time = start_time;
+        self.is_stale = is_stale;
+        self.needs_evaluation = !is_stale;
     }
 
     pub(super) fn note(&mut self, message: fmt::Arguments<'_>) {

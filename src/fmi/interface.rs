@@ -27,6 +27,16 @@ impl Interface {
         }
     }
 
+    /// Whether an instance can get into `phase`.
+    pub(super) fn reaches(self, phase: Phase) -> bool {
+        match phase {
+            Phase::Instantiated | Phase::InitializationMode | Phase::Terminated => true,
+            Phase::StepMode => self == Self::CoSimulation,
+            Phase::EventMode | Phase::ContinuousTimeMode => self == Self::ModelExchange,
+            _ => false,
+        }
+    }
+
     /// Phase after initialisation.
     pub(super) fn first_phase(self) -> Phase {
         match self {

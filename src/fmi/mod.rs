@@ -15,6 +15,8 @@ mod interface;
 mod log;
 mod model_exchange;
 mod phase;
+mod saved_state;
+mod state_handle;
 mod status;
 mod version;
 
@@ -24,5 +26,6 @@ pub use instance::Instance;
 pub use interface::Interface;
 pub use log::{Callback, LOG_CATEGORIES, Logger};
 pub use phase::{Function, Phase};
+pub use saved_state::{LONGEST_SAVED_STATE, SavedState, StateError};
 pub use status::Status;
 pub use version::FmiVersion;

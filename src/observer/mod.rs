@@ -6,6 +6,7 @@ pub mod kalman;
 mod least_squares_window;
 pub mod newton;
 pub mod reduced_newton;
+mod saved_count;
 mod square_window;
 mod step_length;
 pub mod windowed_newton;

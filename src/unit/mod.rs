@@ -6,6 +6,7 @@ pub mod description;
 mod magnetic_bearing;
 mod magnetic_bearing_controller;
 mod magnetic_bearing_plant;
+pub mod persistence;
 pub mod quantity;
 pub mod sample_clock;
 pub mod system;
@@ -18,6 +19,7 @@ pub use continuous::{ContinuousRows, ContinuousUnit};
 pub use description::{Description, Token};
 pub use magnetic_bearing_controller::MagneticBearingController;
 pub use magnetic_bearing_plant::MagneticBearingPlant;
+pub use persistence::Persistent;
 pub use system::System;
 use thiserror::Error;
 
@@ -58,8 +60,9 @@ pub enum UnitError {
 
 /// An exported unit: a flat array of values, indexed by value reference, and what it takes to advance them.
 ///
-/// Units are plain memory: no pointers, no resources; a clone continues bit for bit like the original.
-pub trait Unit: Send {
+/// Units are plain memory: no pointers, no resources; a clone continues bit for bit like the original, and so does
+/// one that went through bytes ([`Persistent`]).
+pub trait Unit: Persistent + Send {
     fn description(&self) -> &'static Description;
 
     /// Values by value reference; [`TIME`] is kept by the caller.
@@ -81,6 +84,13 @@ pub trait Unit: Send {
     /// The unit as one that an importer may integrate, if it is.
     fn continuous(&mut self) -> Option<&mut dyn ContinuousUnit> {
         None
+    }
+
+    /// Whether what the unit has computed from its parameters still belongs to them, once it is initialised. Asked of
+    /// units read from bytes only, which anybody may have written; a unit answers for whatever could make it panic
+    /// or compute without end.
+    fn is_consistent(&self) -> bool {
+        true
     }
 
     /// Copy on the heap.

@@ -13,6 +13,8 @@ pub enum Outcome {
     NotOffered,
     /// Works for the plants; what moves at ticks only does not offer it.
     PlantsOnly,
+    /// Error for this reason, since the table has no argument that would do.
+    Refuses(&'static str),
     /// FMI 2.0: "If a status is required which cannot be retrieved by the slave it returns fmi2Discard."
     Discards,
 }
@@ -53,6 +55,10 @@ fn calls_are_refused_exactly_where_the_standards_forbid_them() {
                     ('x', Outcome::NotOffered | Outcome::PlantsOnly) => {
                         assert_eq!(status, ERROR, "{context}");
                         assert!(text.contains("not offered"), "{context}");
+                    }
+                    ('x', Outcome::Refuses(why)) => {
+                        assert_eq!(status, ERROR, "{context}");
+                        assert!(text.contains(why), "{context}");
                     }
                     ('.', _) => {
                         assert_eq!(status, ERROR, "{context}");

@@ -5,7 +5,7 @@ mod derivatives;
 mod legality;
 mod life_cycle;
 mod model_exchange;
-mod not_offered;
+mod state;
 pub mod types;
 mod variables;
 
@@ -13,5 +13,5 @@ pub use co_simulation::*;
 pub use derivatives::*;
 pub use life_cycle::*;
 pub use model_exchange::*;
-pub use not_offered::*;
+pub use state::*;
 pub use variables::*;

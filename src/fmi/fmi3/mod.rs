@@ -6,6 +6,7 @@ mod legality;
 mod life_cycle;
 mod model_exchange;
 mod not_offered;
+mod state;
 pub mod types;
 mod variables;
 
@@ -14,4 +15,5 @@ pub use derivatives::*;
 pub use life_cycle::*;
 pub use model_exchange::*;
 pub use not_offered::*;
+pub use state::*;
 pub use variables::*;

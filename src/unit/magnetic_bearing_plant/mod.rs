@@ -8,6 +8,8 @@ use super::variable::{Dependency, Kind, Variability, Variable, variable_table};
 use super::{ContinuousUnit, Description, Journal, Unit, UnitError, start_values};
 use crate::plant::magnetic_bearing::{MagneticBearing, State};
 use crate::signal::{GaussianNoise, quantise};
+use serde::{Deserialize, Serialize};
+use serde_big_array::BigArray;
 
 variable_table! {
     TIME = Variable::time();
@@ -112,8 +114,9 @@ const SENSOR_STREAM: u64 = 1;
 const PROCESS_STREAM: u64 = 2;
 
 /// The plant as a unit.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct MagneticBearingPlant {
+    #[serde(with = "BigArray")]
     values: [f64; COUNT],
     bearing: MagneticBearing,
     /// Slope of the input voltage during steps \[V/s\].
@@ -223,6 +226,11 @@ impl Unit for MagneticBearingPlant {
 
     fn continuous(&mut self) -> Option<&mut dyn ContinuousUnit> {
         Some(self)
+    }
+
+    fn is_consistent(&self) -> bool {
+        self.bearing == MagneticBearing::with_bias(self.values[BIAS_FLUX], self.values[SATURATION_FLUX])
+            && check_finite(&self.state()).is_ok()
     }
 
     fn boxed_clone(&self) -> Box<dyn Unit> {
