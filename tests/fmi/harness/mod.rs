@@ -16,6 +16,7 @@ use maglev_fmu::fmi::fmi3::types::fmi3Boolean;
 use maglev_fmu::fmi::fmi3::*;
 use maglev_fmu::unit::{Description, UNITS};
 
+#[allow(unused_imports, reason = "each test binary uses a part")]
 pub use exchange::plants;
 pub use instantiate::{instantiate, instantiate_with};
 pub use recorder::{Message, Recorder, fmi2_logger, fmi3_logger};
