@@ -1,15 +1,15 @@
 //! What a unit must answer to a given input: computed from the unit itself, without FMI, when the package is made.
 //!
-//! The inputs are those that the unit meets in its loop with start values everywhere. Half-way the inputs that the
-//! loop leaves free, such as a reference or a disturbing force, step by a hundredth of their nominal value, so that
-//! they matter as well.
+//! The inputs are those that the unit meets in its loop with start values everywhere. After a third of the run the
+//! inputs that the loop leaves free, such as a reference or a disturbing force, step by a twentieth of their nominal
+//! value, so that they matter as well.
 
 use crate::unit::system::{SYSTEMS, System};
 use crate::unit::variable::{Causality, Kind, Variable};
 use crate::unit::{Description, Silence, UNITS, Unit, UnitError, UnitType};
 
 /// Communication steps of a run, each of the unit's suggested size.
-pub const STEPS: usize = 500;
+pub const STEPS: usize = 1500;
 
 /// Inputs and outputs of a unit over [`STEPS`] communication steps.
 #[derive(Clone, Debug)]
@@ -40,7 +40,7 @@ impl ReferenceRun {
         let mut run = Self { step_size, inputs: input, outputs: output };
         run.outputs.record(0.0, bench.unit());
         for step in 0..STEPS {
-            if step == STEPS / 2 {
+            if step == STEPS / 3 {
                 bench.disturb();
             }
             let before = bench.advance(step_size)?;
@@ -140,13 +140,13 @@ impl Bench {
         &*self.units[self.place]
     }
 
-    /// Moves the free inputs by a hundredth of their nominal values, as far as their range allows.
+    /// Moves the free inputs by a twentieth of their nominal values, as far as their range allows.
     fn disturb(&mut self) {
         let unit = &mut self.units[self.place];
         for &reference in &self.free {
             let variable = &unit.description().variables[reference];
             if let Kind::Real(quantity) = variable.kind {
-                let moved = variable.start + 0.01 * quantity.nominal;
+                let moved = variable.start + 0.05 * quantity.nominal;
                 if variable.check(moved).is_ok() {
                     unit.values_mut()[reference] = moved;
                 }
