@@ -5,7 +5,7 @@ mod package_xml;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use maglev_fmu::package::{CAPABILITIES, FmiVersion, GenerationTime, model_description};
+use maglev_fmu::package::{Capabilities, FmiVersion, GenerationTime, model_description};
 use maglev_fmu::unit::variable::{Causality, Kind};
 use maglev_fmu::unit::{Description, UNITS};
 use package_xml::Element;
@@ -110,45 +110,40 @@ fn packages_carry_their_time() {
 
 #[test]
 fn flags_are_those_of_the_library() {
-    check_all(|_, version, root| {
+    check_all(|description, version, root| {
+        let can = Capabilities::of(description);
         let flags = root.child("CoSimulation");
         let mut expected = vec![
-            ("needsExecutionTool", CAPABILITIES.needs_execution_tool),
-            (
-                "canHandleVariableCommunicationStepSize",
-                CAPABILITIES.can_handle_variable_communication_step_size,
-            ),
-            ("canBeInstantiatedOnlyOncePerProcess", CAPABILITIES.can_be_instantiated_only_once_per_process),
+            ("needsExecutionTool", can.needs_execution_tool),
+            ("canHandleVariableCommunicationStepSize", can.can_handle_variable_communication_step_size),
+            ("canBeInstantiatedOnlyOncePerProcess", can.can_be_instantiated_only_once_per_process),
         ];
         expected.extend(match version {
             FmiVersion::Two => vec![
-                ("canInterpolateInputs", CAPABILITIES.can_interpolate_inputs),
-                ("canRunAsynchronuously", CAPABILITIES.can_run_asynchronously),
-                ("canNotUseMemoryManagementFunctions", CAPABILITIES.can_not_use_memory_management_functions),
-                ("canGetAndSetFMUstate", CAPABILITIES.can_get_and_set_fmu_state),
-                ("canSerializeFMUstate", CAPABILITIES.can_serialize_fmu_state),
-                ("providesDirectionalDerivative", CAPABILITIES.provides_directional_derivatives),
+                ("canInterpolateInputs", can.can_interpolate_inputs),
+                ("canRunAsynchronuously", can.can_run_asynchronously),
+                ("canNotUseMemoryManagementFunctions", can.can_not_use_memory_management_functions),
+                ("canGetAndSetFMUstate", can.can_get_and_set_fmu_state),
+                ("canSerializeFMUstate", can.can_serialize_fmu_state),
+                ("providesDirectionalDerivative", can.provides_directional_derivatives),
             ],
             FmiVersion::Three => vec![
-                ("canGetAndSetFMUState", CAPABILITIES.can_get_and_set_fmu_state),
-                ("canSerializeFMUState", CAPABILITIES.can_serialize_fmu_state),
-                ("providesDirectionalDerivatives", CAPABILITIES.provides_directional_derivatives),
-                ("providesAdjointDerivatives", CAPABILITIES.provides_adjoint_derivatives),
-                ("providesPerElementDependencies", CAPABILITIES.provides_per_element_dependencies),
-                ("providesIntermediateUpdate", CAPABILITIES.provides_intermediate_update),
-                ("mightReturnEarlyFromDoStep", CAPABILITIES.might_return_early_from_do_step),
-                (
-                    "canReturnEarlyAfterIntermediateUpdate",
-                    CAPABILITIES.can_return_early_after_intermediate_update,
-                ),
-                ("hasEventMode", CAPABILITIES.has_event_mode),
-                ("providesEvaluateDiscreteStates", CAPABILITIES.provides_evaluate_discrete_states),
+                ("canGetAndSetFMUState", can.can_get_and_set_fmu_state),
+                ("canSerializeFMUState", can.can_serialize_fmu_state),
+                ("providesDirectionalDerivatives", can.provides_directional_derivatives),
+                ("providesAdjointDerivatives", can.provides_adjoint_derivatives),
+                ("providesPerElementDependencies", can.provides_per_element_dependencies),
+                ("providesIntermediateUpdate", can.provides_intermediate_update),
+                ("mightReturnEarlyFromDoStep", can.might_return_early_from_do_step),
+                ("canReturnEarlyAfterIntermediateUpdate", can.can_return_early_after_intermediate_update),
+                ("hasEventMode", can.has_event_mode),
+                ("providesEvaluateDiscreteStates", can.provides_evaluate_discrete_states),
             ],
         });
         for (flag, value) in &expected {
             assert_eq!(flags.attribute(flag), Some(value.to_string().as_str()), "{flag}");
         }
-        let order = CAPABILITIES.max_output_derivative_order.to_string();
+        let order = can.max_output_derivative_order.to_string();
         assert_eq!(flags.attribute("maxOutputDerivativeOrder"), Some(order.as_str()));
         // Nothing but those, the order and the identifier.
         assert_eq!(flags.attributes.len(), expected.len() + 2);

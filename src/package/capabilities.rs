@@ -1,6 +1,8 @@
 //! What the units declare to be able to do: the capability flags of both standards.
 
-/// Capability flags of a co-simulation unit, named as in FMI 3.0 where the standards differ in spelling.
+use crate::unit::Description;
+
+/// Capability flags of a unit, named as in FMI 3.0 where the standards differ in spelling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Capabilities {
     /// Communication steps may differ in size.
@@ -35,8 +37,15 @@ pub struct Capabilities {
     pub provides_evaluate_discrete_states: bool,
 }
 
-/// Capabilities of every unit in the shared library.
-pub const CAPABILITIES: Capabilities = Capabilities {
+impl Capabilities {
+    /// Capabilities of a unit in the shared library.
+    pub fn of(description: &Description) -> Self {
+        if description.is_sampled() { CONTROLLER } else { PLANT }
+    }
+}
+
+/// What all units have in common.
+const EVERY_UNIT: Capabilities = Capabilities {
     can_handle_variable_communication_step_size: true,
     can_interpolate_inputs: false,
     max_output_derivative_order: 0,
@@ -56,8 +65,15 @@ pub const CAPABILITIES: Capabilities = Capabilities {
     provides_evaluate_discrete_states: false,
 };
 
+/// Plants move in continuous time.
+const PLANT: Capabilities = Capabilities { ..EVERY_UNIT };
+
+/// Controllers act at their ticks.
+const CONTROLLER: Capabilities = Capabilities { ..EVERY_UNIT };
+
 // Flags that the standards allow only together with another.
-const _: () = assert!(CAPABILITIES.can_get_and_set_fmu_state || !CAPABILITIES.can_serialize_fmu_state);
-const _: () = assert!(
-    CAPABILITIES.provides_intermediate_update || !CAPABILITIES.can_return_early_after_intermediate_update
-);
+const fn is_consistent(can: &Capabilities) -> bool {
+    (can.can_get_and_set_fmu_state || !can.can_serialize_fmu_state)
+        && (can.provides_intermediate_update || !can.can_return_early_after_intermediate_update)
+}
+const _: () = assert!(is_consistent(&PLANT) && is_consistent(&CONTROLLER));

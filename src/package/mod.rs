@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 
 pub use crate::fmi::FmiVersion;
 pub use archive::archive;
-pub use capabilities::{CAPABILITIES, Capabilities};
+pub use capabilities::Capabilities;
 pub use checked_in::{Readme, checked_in_files, describe, readme_with_tables};
 pub use contents::{Entry, contents};
 pub use error::PackageError;

@@ -25,6 +25,11 @@ impl Description {
         self.variables.iter().enumerate().find(|(_, variable)| variable.name == name)
     }
 
+    /// Whether the unit acts at ticks only, as the controllers do, and not in continuous time.
+    pub fn is_sampled(&self) -> bool {
+        self.find("sample_time").is_some()
+    }
+
     /// Instantiation token (FMI 2: GUID), computed from the interface, so that a model description and a library
     /// that disagree about a variable cannot be loaded together.
     pub fn token(&self) -> Token {

@@ -13,7 +13,7 @@ use super::common::{
     quantities, real,
 };
 use super::roles;
-use crate::package::{CAPABILITIES, FmiVersion, GenerationTime, licenses};
+use crate::package::{Capabilities, FmiVersion, GenerationTime, licenses};
 use crate::unit::Description;
 use crate::unit::variable::{Kind, Variable};
 
@@ -31,7 +31,7 @@ impl ModelDescription {
             generation_tool: GENERATION_TOOL,
             generation_time: time.map(|time| time.to_string()),
             variable_naming_convention: "structured",
-            co_simulation: CoSimulation::new(description.name),
+            co_simulation: CoSimulation::new(description),
             unit_definitions: UnitDefinitions::new(description),
             type_definitions: TypeDefinitions::new(description),
             log_categories: LogCategories::new(),
@@ -47,10 +47,10 @@ impl ModelDescription {
 }
 
 impl CoSimulation {
-    fn new(model_identifier: &'static str) -> Self {
-        let can = CAPABILITIES;
+    fn new(description: &Description) -> Self {
+        let can = Capabilities::of(description);
         Self {
-            model_identifier,
+            model_identifier: description.name,
             needs_execution_tool: can.needs_execution_tool,
             can_handle_variable_communication_step_size: can.can_handle_variable_communication_step_size,
             can_interpolate_inputs: can.can_interpolate_inputs,
