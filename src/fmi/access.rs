@@ -7,6 +7,8 @@ use crate::unit::variable::{Causality, Kind, Variability, Variable};
 pub(super) struct DataType {
     pub name: &'static str,
     pub carries: fn(&Kind) -> bool,
+    /// Whether the standard has clocks, too.
+    pub has_clocks: bool,
 }
 
 impl Instance {
@@ -50,7 +52,7 @@ impl Instance {
         for (reference, value) in references.iter().zip(values) {
             target[*reference as usize] = convert(*value);
         }
-        if self.phase != Phase::StepMode {
+        if matches!(self.phase, Phase::Instantiated | Phase::InitializationMode) {
             self.is_stale = true;
         } else if parameters_changed {
             self.unit.adopt_parameters();
@@ -60,17 +62,35 @@ impl Instance {
 
     /// Calculated values follow parameters and inputs until the first step.
     #[inline]
-    fn refresh_before_first_step(&mut self) -> Result<(), CallError> {
+    pub(super) fn refresh_before_first_step(&mut self) -> Result<(), CallError> {
         if self.is_stale && matches!(self.phase, Phase::Instantiated | Phase::InitializationMode) {
             self.refresh()?;
         }
         Ok(())
     }
 
+    /// Why there is no variable with this value reference.
+    #[cold]
+    fn no_variable(&self, data_type: &DataType, reference: u32) -> CallError {
+        if !data_type.has_clocks {
+            return CallError::UnknownReference { reference, largest: self.variables.len() - 1 };
+        }
+        let mut clocks = self.unit.description().clocks();
+        match clocks.find(|(known, _)| *known == reference as usize) {
+            Some((_, clock)) => CallError::IsClock { name: clock.name, reference, asked: data_type.name },
+            None => self.unknown_reference(reference),
+        }
+    }
+
+    pub(super) fn unknown_reference(&self, reference: u32) -> CallError {
+        let clocks = self.unit.description().clocks().count();
+        CallError::UnknownReference { reference, largest: self.variables.len() + clocks - 1 }
+    }
+
     #[inline]
     fn find(&self, data_type: &DataType, reference: u32) -> Result<&'static Variable, CallError> {
         let Some(variable) = self.variables.get(reference as usize) else {
-            return Err(CallError::UnknownReference { reference, largest: self.variables.len() - 1 });
+            return Err(self.no_variable(data_type, reference));
         };
         if (data_type.carries)(&variable.kind) {
             return Ok(variable);
@@ -89,12 +109,22 @@ impl Instance {
     }
 }
 
-/// Before the first step parameters and inputs may be set, afterwards inputs and tunable parameters.
+/// Before the first step parameters and inputs may be set, afterwards inputs and tunable parameters, and within a step
+/// continuous inputs.
 #[inline]
 fn require_settable(variable: &Variable, phase: Phase) -> Result<(), CallError> {
     let why = match (variable.causality, variable.variability) {
-        (Causality::Input, _) | (Causality::Parameter, Variability::Tunable) => return Ok(()),
-        (Causality::Parameter, _) if phase != Phase::StepMode => return Ok(()),
+        (Causality::Input, Variability::Continuous) => return Ok(()),
+        (Causality::Input, _) | (Causality::Parameter, Variability::Tunable)
+            if phase != Phase::IntermediateUpdateMode =>
+        {
+            return Ok(());
+        }
+        (Causality::Input, _) => "a discrete input",
+        (Causality::Parameter, Variability::Tunable) => "a parameter",
+        (Causality::Parameter, _) if matches!(phase, Phase::Instantiated | Phase::InitializationMode) => {
+            return Ok(());
+        }
         (Causality::Parameter, _) => "a fixed parameter",
         (Causality::Independent, _) => "the independent variable",
         _ => "calculated by the unit",

@@ -3,7 +3,10 @@
 use core::ffi::CStr;
 use core::fmt;
 
+use super::fmi3::types::{fmi3ClockUpdateCallback, fmi3InstanceEnvironment};
+use super::intermediate_update::{IntermediateUpdate, StepInProgress};
 use super::saved_state::Life;
+use super::ticking::{ClockStates, Ticking};
 use super::{CallError, Callback, CommunicationPoint, Function, Logger, Phase};
 use crate::unit::variable::Variable;
 use crate::unit::{Journal, TIME, Topic, UNITS, Unit};
@@ -17,9 +20,17 @@ pub struct Instance {
     pub(super) phase: Phase,
     pub(super) logger: Logger,
     pub(super) communication: CommunicationPoint,
-    start_time: f64,
+    pub(super) start_time: f64,
     /// Whether a value was set since the calculated ones were last computed, before the first step.
     pub(super) is_stale: bool,
+    pub(super) ticking: Ticking,
+    pub(super) clocks: ClockStates,
+    /// How the importer wants to be called back within a step.
+    pub(super) intermediate_update: Option<IntermediateUpdate>,
+    /// The step within which it is called back.
+    pub(super) step: Option<StepInProgress>,
+    /// How a scheduler wants to be told of the clock `ticked`.
+    pub(super) clock_update: Option<(fmi3ClockUpdateCallback, fmi3InstanceEnvironment)>,
 }
 
 impl Instance {
@@ -34,6 +45,11 @@ impl Instance {
             communication: CommunicationPoint::new(0.0),
             start_time: 0.0,
             is_stale: true,
+            ticking: Ticking::InSteps,
+            clocks: ClockStates::default(),
+            intermediate_update: None,
+            step: None,
+            clock_update: None,
         }
     }
 
@@ -86,7 +102,7 @@ impl Instance {
     pub(super) fn exit_initialization_mode(&mut self) -> Result<(), CallError> {
         self.is_stale = true;
         self.refresh()?;
-        self.phase = Phase::StepMode;
+        self.phase = self.ticking.first_phase();
         let (name, start_time) = (self.unit.description().name, self.start_time);
         self.note(format_args!("{name} initialised at t = {start_time} s"));
         Ok(())
@@ -115,28 +131,31 @@ impl Instance {
         self.start_time = 0.0;
         self.communication = CommunicationPoint::new(0.0);
         self.is_stale = true;
+        self.clocks = ClockStates::default();
         self.note(format_args!("reset"));
         Ok(())
     }
 
     /// Whether the instance can get into `phase`.
     pub(super) fn reaches(&self, phase: Phase) -> bool {
-        matches!(phase, Phase::Instantiated | Phase::InitializationMode | Phase::StepMode | Phase::Terminated)
+        matches!(phase, Phase::Instantiated | Phase::InitializationMode | Phase::Terminated)
+            || self.ticking.reaches(phase)
     }
 
     /// What a saved state has to tell besides the unit.
     pub(super) fn life(&self) -> Life {
-        let Self { phase, communication, start_time, is_stale, .. } = *self;
-        Life { phase, communication, start_time, is_stale }
+        let Self { phase, communication, start_time, is_stale, clocks, .. } = *self;
+        Life { phase, communication, start_time, is_stale, clocks }
     }
 
     /// Goes on from a saved state; the unit has been restored.
     pub(super) fn resume(&mut self, life: Life) {
-        let Life { phase, communication, start_time, is_stale } = life;
+        let Life { phase, communication, start_time, is_stale, clocks } = life;
         self.phase = phase;
         self.communication = communication;
         self.start_time = start_time;
         self.is_stale = is_stale;
+        self.clocks = clocks;
     }
 
     pub(super) fn note(&mut self, message: fmt::Arguments<'_>) {

@@ -9,12 +9,15 @@ mod communication;
 mod error;
 pub mod fmi2;
 pub mod fmi3;
+mod fraction;
 mod instance;
+mod intermediate_update;
 mod log;
 mod phase;
 mod saved_state;
 mod state_handle;
 mod status;
+mod ticking;
 mod version;
 
 pub use communication::CommunicationPoint;

@@ -3,6 +3,9 @@
 use super::sample_clock::SampleClock;
 use super::{Description, Journal};
 
+/// Ticks in one step, minutes of computing; more can only be a mistake, as an end time that stands for "never".
+pub const LARGEST_NUMBER_OF_TICKS: i64 = 1_000_000_000;
+
 /// A unit whose ticks may be had one by one; [`super::Unit::advance`] runs them by itself.
 ///
 /// The ticks that are run are the same either way, and so is what they do: it follows from the inputs at a tick and

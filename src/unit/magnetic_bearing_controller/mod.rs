@@ -8,16 +8,13 @@ pub use table::DESCRIPTION;
 use table::*;
 
 use super::sample_clock::SampleClock;
-use super::sampled::SampledUnit;
+use super::sampled::{LARGEST_NUMBER_OF_TICKS, SampledUnit};
 use super::{Description, Journal, Topic, Unit, UnitError, start_values};
 use crate::controller::{BearingLaw, saturate};
 use crate::observer::{BearingObserver, Estimate};
 use crate::plant::magnetic_bearing::State;
 use serde::{Deserialize, Serialize};
 use serde_big_array::BigArray;
-
-/// Ticks in one step, minutes of computing; more can only be a mistake, as an end time that stands for "never".
-const LARGEST_NUMBER_OF_TICKS: i64 = 1_000_000_000;
 
 /// The controller as a unit.
 #[derive(Clone, Serialize, Deserialize)]

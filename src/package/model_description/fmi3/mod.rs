@@ -4,8 +4,8 @@ mod elements;
 
 pub use elements::ModelDescription;
 use elements::{
-    CoSimulation, ModelStructure, ModelVariables, Type, TypeDefinitions, TypedVariable, Unknown,
-    VariableAttributes,
+    ClockAttributes, CoSimulation, ModelStructure, ModelVariables, ScheduledExecution, Type, TypeDefinitions,
+    TypedVariable, Unknown, VariableAttributes,
 };
 
 use super::common::{
@@ -15,6 +15,7 @@ use super::common::{
 use super::roles;
 use crate::package::{Capabilities, FmiVersion, GenerationTime, licenses};
 use crate::unit::Description;
+use crate::unit::sampled::ClockVariable;
 use crate::unit::variable::{Kind, Variable};
 
 impl ModelDescription {
@@ -32,13 +33,17 @@ impl ModelDescription {
             generation_time: time.map(|time| time.to_string()),
             variable_naming_convention: "structured",
             co_simulation: CoSimulation::new(description),
+            scheduled_execution: ScheduledExecution::new(description),
             unit_definitions: UnitDefinitions::new(description),
             type_definitions: TypeDefinitions::new(description),
             log_categories: LogCategories::new(),
             default_experiment: DefaultExperiment::new(description),
             model_variables: ModelVariables {
                 variables: variables
-                    .map(|(reference, variable)| TypedVariable::new(reference, variable))
+                    .map(|(reference, variable)| TypedVariable::new(description, reference, variable))
+                    .chain(
+                        description.clocks().map(|(reference, clock)| TypedVariable::clock(reference, clock)),
+                    )
                     .collect(),
             },
             model_structure: ModelStructure::new(description),
@@ -69,6 +74,22 @@ impl CoSimulation {
     }
 }
 
+impl ScheduledExecution {
+    fn new(description: &Description) -> Option<Self> {
+        let can = Capabilities::of(description);
+        can.offers_scheduled_execution.then(|| Self {
+            model_identifier: description.name,
+            needs_execution_tool: can.needs_execution_tool,
+            can_be_instantiated_only_once_per_process: can.can_be_instantiated_only_once_per_process,
+            can_get_and_set_fmu_state: can.can_get_and_set_fmu_state,
+            can_serialize_fmu_state: can.can_serialize_fmu_state,
+            provides_directional_derivatives: can.provides_directional_derivatives,
+            provides_adjoint_derivatives: can.provides_adjoint_derivatives,
+            provides_per_element_dependencies: can.provides_per_element_dependencies,
+        })
+    }
+}
+
 impl TypeDefinitions {
     fn new(description: &Description) -> Self {
         let reals = quantities(description).into_iter().map(|quantity| Type::Float64Type {
@@ -89,7 +110,22 @@ impl TypeDefinitions {
 }
 
 impl TypedVariable {
-    fn new(value_reference: usize, variable: &Variable) -> Self {
+    fn clock(value_reference: usize, clock: &ClockVariable) -> Self {
+        // The interval follows from a fixed parameter, so the clock is a fixed one without intervalDecimal; section
+        // 2.4.5.1 asks for that attribute, but by section 2.2.9.1 an importer would then have to set the interval.
+        Self::Clock(ClockAttributes {
+            name: clock.name,
+            value_reference,
+            description: clock.description,
+            causality: if clock.is_input { "input" } else { "output" },
+            variability: "discrete",
+            priority: clock.is_input.then_some(0),
+            interval_variability: if clock.is_input { "fixed" } else { "triggered" },
+            supports_fraction: clock.is_input.then_some(true),
+        })
+    }
+
+    fn new(description: &Description, value_reference: usize, variable: &Variable) -> Self {
         let [minimum, maximum] = roles::range(variable);
         let attributes = |declared_type| VariableAttributes {
             name: variable.name,
@@ -98,6 +134,7 @@ impl TypedVariable {
             causality: roles::causality(variable),
             variability: roles::variability(variable),
             initial: roles::initial(variable),
+            intermediate_update: roles::may_be_set_within_a_step(description, variable).then_some(true),
             declared_type,
             minimum,
             maximum,
@@ -119,9 +156,18 @@ impl ModelStructure {
             dependencies: roles::joined(dependencies),
             dependencies_kind: roles::dependencies_kind(dependencies.len()),
         };
+        let clocks = |is_input| {
+            let clocks = description.clocks().filter(move |(_, clock)| clock.is_input == is_input);
+            clocks.map(|(reference, _)| reference)
+        };
+        let (input_clocks, output_clocks) = (clocks(true).collect::<Vec<_>>(), clocks(false));
         Self {
             // Outputs change in a step only: at a communication point they depend on nothing.
-            outputs: roles::outputs(description).map(|reference| unknown(reference, &[])).collect(),
+            // A tick of the input clock is one of the output clock.
+            outputs: roles::outputs(description)
+                .map(|reference| unknown(reference, &[]))
+                .chain(output_clocks.map(|reference| unknown(reference, &input_clocks)))
+                .collect(),
             initial_unknowns: roles::initial_unknowns(description)
                 .map(|(reference, dependencies)| unknown(reference, &dependencies))
                 .collect(),
