@@ -4,14 +4,14 @@
 #[path = "fmi/packaged/mod.rs"]
 mod packaged;
 
-use maglev_fmu::host::{HostError, Instance};
+use maglev_fmu::host::{HostError, Instance, Storage};
 use maglev_fmu::package::FmiVersion;
 use maglev_fmu::unit::system::SYSTEMS;
 use maglev_fmu::unit::variable::{Causality, Kind};
 
 /// All reals of the unit, as bits.
 fn snapshot(instance: &Instance) -> Vec<u64> {
-    let reals = instance.description().variables.iter().filter(|variable| !variable.is_array);
+    let reals = instance.description().variables.iter().filter(|variable| variable.storage != Storage::Other);
     reals
         .map(|variable| instance.get(instance.variable(&variable.name).unwrap()).unwrap().to_bits())
         .collect()

@@ -22,8 +22,10 @@ impl Instance {
         convert: impl Fn(f64) -> T,
     ) -> Result<(), CallError> {
         self.refresh_before_first_step()?;
+        self.evaluate();
         for reference in references {
             self.find(data_type, *reference)?;
+            self.require_computed(*reference as usize)?;
         }
         let source = self.unit.values();
         for (value, reference) in values.iter_mut().zip(references) {
@@ -44,7 +46,7 @@ impl Instance {
         let mut parameters_changed = false;
         for (reference, value) in references.iter().zip(values) {
             let variable = self.find(data_type, *reference)?;
-            require_settable(variable, self.phase)?;
+            self.require_settable(*reference, variable)?;
             variable.check(convert(*value))?;
             parameters_changed |= variable.causality == Causality::Parameter;
         }
@@ -54,7 +56,10 @@ impl Instance {
         }
         if matches!(self.phase, Phase::Instantiated | Phase::InitializationMode) {
             self.is_stale = true;
-        } else if parameters_changed {
+            return Ok(());
+        }
+        self.needs_evaluation = true;
+        if parameters_changed {
             self.unit.adopt_parameters();
         }
         Ok(())
@@ -107,27 +112,32 @@ impl Instance {
             asked: data_type.name,
         })
     }
-}
 
-/// Before the first step parameters and inputs may be set, afterwards inputs and tunable parameters, and within a step
-/// continuous inputs.
-#[inline]
-fn require_settable(variable: &Variable, phase: Phase) -> Result<(), CallError> {
-    let why = match (variable.causality, variable.variability) {
-        (Causality::Input, Variability::Continuous) => return Ok(()),
-        (Causality::Input, _) | (Causality::Parameter, Variability::Tunable)
-            if phase != Phase::IntermediateUpdateMode =>
-        {
-            return Ok(());
-        }
-        (Causality::Input, _) => "a discrete input",
-        (Causality::Parameter, Variability::Tunable) => "a parameter",
-        (Causality::Parameter, _) if matches!(phase, Phase::Instantiated | Phase::InitializationMode) => {
-            return Ok(());
-        }
-        (Causality::Parameter, _) => "a fixed parameter",
-        (Causality::Independent, _) => "the independent variable",
-        _ => "calculated by the unit",
-    };
-    Err(CallError::NotSettable { name: variable.name, why, phase: phase.name() })
+    /// Before the first step parameters and inputs may be set, afterwards inputs and tunable parameters. An importer
+    /// that integrates the unit may set continuous inputs and states in continuous time, and at an event also states
+    /// that do not jump (FMI 3.0.2, section 2.3.5). Within a step continuous inputs may be set, too.
+    #[inline]
+    fn require_settable(&self, reference: u32, variable: &Variable) -> Result<(), CallError> {
+        let is_initial = matches!(self.phase, Phase::Instantiated | Phase::InitializationMode);
+        let is_continuous_time =
+            matches!(self.phase, Phase::ContinuousTimeMode | Phase::IntermediateUpdateMode);
+        let why = match (variable.causality, variable.variability) {
+            (Causality::Input, Variability::Continuous) => return Ok(()),
+            (Causality::Input, _) | (Causality::Parameter, Variability::Tunable) if !is_continuous_time => {
+                return Ok(());
+            }
+            (Causality::Input, _) => "a discrete input",
+            (Causality::Parameter, Variability::Tunable) => "a parameter",
+            (Causality::Parameter, _) if is_initial => return Ok(()),
+            (Causality::Parameter, _) => "a fixed parameter",
+            (Causality::Independent, _) => "the independent variable",
+            _ if self.rows.states().contains(&(reference as usize)) => match self.phase {
+                Phase::ContinuousTimeMode => return Ok(()),
+                Phase::EventMode if !variable.is_reinitialised => return Ok(()),
+                _ => "a continuous state",
+            },
+            _ => "calculated by the unit",
+        };
+        Err(CallError::NotSettable { name: variable.name, why, phase: self.phase.name() })
+    }
 }

@@ -1,25 +1,38 @@
 //! Times as fractions, as FMI 3.0 wants them for clocks.
 
-/// The fraction with the smallest denominator whose quotient is exactly `value`, which is not negative: 1/1000 for
-/// 0.001, although no double is a thousandth. None if 64 bits are too few.
+/// The first convergent of the continued fraction of `value` whose quotient is exactly `value`, which is not negative:
+/// 1/1000 for 0.001, although no double is a thousandth. None if 64 bits are too few.
 ///
-/// Successive convergents of the continued fraction; each is the best approximation with its denominator.
+/// Euclid's algorithm on the double itself, a whole number over a power of two.
 pub(super) fn fraction(value: f64) -> Option<(u64, u64)> {
+    /// Digits of a double's fraction in 1, and of the power of two that fits beside it.
+    const DIGITS: i32 = 52;
+    const LARGEST_POWER: i32 = 126;
+    if value == 0.0 {
+        return Some((0, 1));
+    }
+    if !value.is_finite() || value < 0.0 {
+        return None;
+    }
+    let (mantissa, exponent) = libm::frexp(value);
+    let power = DIGITS + 1 - exponent;
+    if !(0..=LARGEST_POWER).contains(&power) {
+        return None;
+    }
+    let mut dividend = libm::ldexp(mantissa, DIGITS + 1) as u128;
+    let mut divisor = 1u128 << power;
     let (mut numerators, mut denominators) = ([0u64, 1], [1u64, 0]);
-    let mut rest = value;
-    loop {
-        let whole = libm::floor(rest);
-        if !(0.0..9e15).contains(&whole) {
-            return None;
-        }
-        let next = |[before, last]: [u64; 2]| (whole as u64).checked_mul(last)?.checked_add(before);
+    while divisor != 0 {
+        let whole = u64::try_from(dividend / divisor).ok()?;
+        let next = |[before, last]: [u64; 2]| whole.checked_mul(last)?.checked_add(before);
         numerators = [numerators[1], next(numerators)?];
         denominators = [denominators[1], next(denominators)?];
         if numerators[1] as f64 / denominators[1] as f64 == value {
             return Some((numerators[1], denominators[1]));
         }
-        rest = 1.0 / (rest - whole);
+        (dividend, divisor) = (divisor, dividend % divisor);
     }
+    None
 }
 
 #[cfg(test)]

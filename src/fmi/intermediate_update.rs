@@ -5,8 +5,8 @@
 //! were just set. Plants make no steps of their own within a communication step and call nobody.
 
 use super::fmi3::types::{fmi3InstanceEnvironment, fmi3IntermediateUpdateCallback};
-use super::ticking::{StepEnd, Ticking};
-use super::{CallError, CommunicationPoint, Instance, Phase};
+use super::ticking::{StepEnd, sampled};
+use super::{CallError, CommunicationPoint, Instance, Interface, Phase};
 use crate::unit::TIME;
 use crate::unit::sample_clock::SampleClock;
 use crate::unit::sampled::LARGEST_NUMBER_OF_TICKS;
@@ -45,7 +45,7 @@ impl Instance {
     #[inline]
     pub(super) fn begin_step(&mut self, point: f64, step_size: f64) -> Result<Progress, CallError> {
         // With events, ticks end steps unless that is forbidden, and it is the importer who runs them.
-        let ends_at_ticks = matches!(self.ticking, Ticking::AtEvents { may_return_early: true });
+        let ends_at_ticks = self.interface == Interface::CoSimulationWithEvents { may_return_early: true };
         match self.intermediate_update {
             Some(update) if !ends_at_ticks && self.unit.sampled().is_some() => {
                 self.begin_step_with_callbacks(update, point, step_size)
@@ -61,9 +61,7 @@ impl Instance {
         step_size: f64,
     ) -> Result<Progress, CallError> {
         let duration = self.communication.duration(point, step_size)?;
-        let Some(unit) = self.unit.sampled() else {
-            return Err(CallError::NotOffered("the unit has no clocks"));
-        };
+        let unit = sampled(&mut *self.unit)?;
         let mut final_clock = *unit.clock();
         // Refuses what `Unit::advance` would refuse; the ticks are counted one by one below.
         final_clock.advance_at_most(duration, LARGEST_NUMBER_OF_TICKS)?;
@@ -90,9 +88,7 @@ impl Instance {
             step.end = time;
             step.final_clock = None;
         }
-        let Some(unit) = self.unit.sampled() else {
-            return Err(CallError::NotOffered("the unit has no clocks"));
-        };
+        let unit = sampled(&mut *self.unit)?;
         // A tick at the end of the step belongs to the next one.
         if unit.clock().until_tick_within(step.rest).is_some() {
             let time = unit.clock_mut().take();
@@ -103,9 +99,7 @@ impl Instance {
 
     /// To the next tick within the step, or to its end.
     fn go_on(&mut self, update: IntermediateUpdate, mut step: StepInProgress) -> Result<Progress, CallError> {
-        let Some(unit) = self.unit.sampled() else {
-            return Err(CallError::NotOffered("the unit has no clocks"));
-        };
+        let unit = sampled(&mut *self.unit)?;
         let clock = unit.clock_mut();
         if let Some(wait) = clock.until_tick_within(step.rest) {
             clock.pass(wait);
@@ -121,7 +115,7 @@ impl Instance {
             Some(final_clock) => *clock = *final_clock,
             None => clock.pass(step.rest),
         }
-        let is_event = matches!(self.ticking, Ticking::AtEvents { .. }) && clock.is_due();
+        let is_event = matches!(self.interface, Interface::CoSimulationWithEvents { .. }) && clock.is_due();
         self.communication = CommunicationPoint::new(step.end);
         self.unit.values_mut()[TIME] = step.end;
         Ok(Progress::Done(StepEnd { is_event, is_early: step.final_clock.is_none() }))

@@ -89,6 +89,8 @@ pub(super) struct Life {
     pub start_time: f64,
     /// See [`Instance`].
     pub is_stale: bool,
+    /// See [`Instance`].
+    pub needs_evaluation: bool,
     pub clocks: ClockStates,
 }
 

@@ -1,4 +1,4 @@
-//! Who makes a sampled unit tick: the unit within its steps, the importer at events, or a scheduler.
+//! Who makes a sampled unit tick: the unit within its steps, the importer at events, or a scheduler ([`Interface`]).
 //!
 //! All three run the same ticks with the same inputs. Without events a tick at t reads the inputs that were set before
 //! the step that starts at or before t. With events a step ends at the tick; the importer enters event mode, sets the
@@ -6,43 +6,10 @@
 //! outputs can be read and the clock `ticked` is active. The outputs thus follow from the state alone and never, at
 //! one instant, from the inputs: a loop through a plant is no algebraic loop.
 
-use super::{CallError, CommunicationPoint, Instance, Phase};
+use super::{CallError, CommunicationPoint, Instance, Interface, Phase};
 use crate::unit::sampled::{CLOCKS, TICK, TICKED};
-use crate::unit::{Journal, SampledUnit, TIME, Unit};
+use crate::unit::{SampledUnit, TIME, Unit};
 use serde::{Deserialize, Serialize};
-
-/// How an instance was asked to tick.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ticking {
-    /// Within steps; of units that are not sampled, not at all.
-    InSteps,
-    /// In event mode. A step that may not return early runs the ticks inside it as [`Ticking::InSteps`] does, and only
-    /// a tick at its end is an event.
-    AtEvents { may_return_early: bool },
-    /// When a scheduler activates the model partition.
-    OnActivation,
-}
-
-impl Ticking {
-    /// Phase that follows initialisation.
-    pub(super) fn first_phase(self) -> Phase {
-        match self {
-            Self::InSteps => Phase::StepMode,
-            Self::AtEvents { .. } => Phase::EventMode,
-            Self::OnActivation => Phase::ClockActivationMode,
-        }
-    }
-
-    /// Whether an instance can get into `phase`, one of those after initialisation.
-    pub(super) fn reaches(self, phase: Phase) -> bool {
-        match phase {
-            Phase::StepMode => self != Self::OnActivation,
-            Phase::EventMode => matches!(self, Self::AtEvents { .. }),
-            Phase::ClockActivationMode => self == Self::OnActivation,
-            _ => false,
-        }
-    }
-}
 
 /// Clocks at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -63,43 +30,11 @@ pub(super) struct StepEnd {
     pub is_early: bool,
 }
 
-/// What an importer learns from the end of an event iteration.
-pub(super) struct EventEnd {
-    /// Another one is needed.
-    pub is_unfinished: bool,
-    /// \[s\]
-    pub next_event_time: f64,
-}
-
 impl Instance {
-    /// The same instance with other ticks; refused with a message if the unit has none.
-    pub(super) fn ticking(mut self, function: &str, ticking: Ticking) -> Option<Self> {
-        let name = self.unit.description().name;
-        let asked = match ticking {
-            Ticking::InSteps => return Some(self),
-            Ticking::AtEvents { .. } => "event mode",
-            Ticking::OnActivation => "scheduled execution",
-        };
-        if self.unit.sampled().is_none() {
-            self.logger.error(format_args!("{function}: {name} does not offer {asked}, it has no clocks"));
-            return None;
-        }
-        self.ticking = ticking;
-        Some(self)
-    }
-
-    /// The unit of an instance that ticks at events.
-    fn at_events(&mut self) -> Result<(&mut dyn SampledUnit, &mut dyn Journal), CallError> {
-        if !matches!(self.ticking, Ticking::AtEvents { .. }) {
-            return Err(CallError::NotOffered("the instance was not made for event mode"));
-        }
-        sampled(&mut *self.unit).map(|unit| (unit, &mut self.logger as &mut dyn Journal))
-    }
-
     /// One step from `point` over `step_size`, both in s, or up to the tick before its end.
     #[inline]
     pub(super) fn step_to_event(&mut self, point: f64, step_size: f64) -> Result<StepEnd, CallError> {
-        let Ticking::AtEvents { may_return_early } = self.ticking else {
+        let Interface::CoSimulationWithEvents { may_return_early } = self.interface else {
             self.do_step(point, step_size)?;
             return Ok(StepEnd { is_event: false, is_early: false });
         };
@@ -121,32 +56,6 @@ impl Instance {
         }
         self.unit.values_mut()[TIME] = self.communication.now();
         Ok(StepEnd { is_event: sampled(&mut *self.unit)?.clock().is_due(), is_early })
-    }
-
-    pub(super) fn enter_event_mode(&mut self) -> Result<(), CallError> {
-        self.at_events()?;
-        self.phase = Phase::EventMode;
-        Ok(())
-    }
-
-    pub(super) fn enter_step_mode(&mut self) -> Result<(), CallError> {
-        self.at_events()?;
-        self.clocks = ClockStates::default();
-        self.phase = Phase::StepMode;
-        Ok(())
-    }
-
-    /// Runs the tick that is due, if there is one.
-    pub(super) fn update_discrete_states(&mut self) -> Result<EventEnd, CallError> {
-        let (unit, journal) = self.at_events()?;
-        let is_due = unit.clock().is_due();
-        if is_due {
-            let time = unit.clock_mut().take();
-            unit.tick(time, journal);
-        }
-        let next_event_time = unit.clock().next_time();
-        self.clocks = ClockStates { has_ticked: is_due, ..ClockStates::default() };
-        Ok(EventEnd { is_unfinished: is_due, next_event_time })
     }
 
     /// Runs the tick that a scheduler calls for at `time` \[s\].
@@ -205,7 +114,7 @@ impl Instance {
                 _ => self.clocks.has_ticked.into(),
             };
         }
-        if self.ticking == Ticking::OnActivation && !references.is_empty() {
+        if self.interface == Interface::ScheduledExecution && !references.is_empty() {
             self.clocks.has_ticked = false;
         }
         Ok(())
@@ -221,7 +130,7 @@ impl Instance {
                 return Err(self.no_input_clock());
             }
             let now = self.communication.now();
-            let (unit, _) = self.at_events()?;
+            let unit = sampled(&mut *self.unit)?;
             match (*value != 0, unit.clock().is_due() || has_ticked) {
                 (true, true) => is_tick_set = true,
                 (true, false) => {
@@ -247,6 +156,6 @@ impl Instance {
     }
 }
 
-fn sampled(unit: &mut dyn Unit) -> Result<&mut dyn SampledUnit, CallError> {
+pub(super) fn sampled(unit: &mut dyn Unit) -> Result<&mut dyn SampledUnit, CallError> {
     unit.sampled().ok_or(CallError::NotOffered("the unit has no clocks"))
 }

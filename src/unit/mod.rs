@@ -1,6 +1,7 @@
 //! What is exported: per unit its variable table, and how plant, observer and law are wired and sampled.
 //! Knows nothing of FMI.
 
+pub mod continuous;
 pub mod description;
 mod magnetic_bearing;
 mod magnetic_bearing_controller;
@@ -15,6 +16,7 @@ pub mod variable;
 
 use core::fmt;
 
+pub use continuous::{ContinuousRows, ContinuousUnit};
 pub use description::{Description, Token};
 pub use magnetic_bearing_controller::MagneticBearingController;
 pub use magnetic_bearing_plant::MagneticBearingPlant;
@@ -91,6 +93,11 @@ pub trait Unit: Persistent + Send {
     /// or compute without end.
     fn is_consistent(&self) -> bool {
         true
+    }
+
+    /// The unit as one that an importer may integrate, if it is.
+    fn continuous(&mut self) -> Option<&mut dyn ContinuousUnit> {
+        None
     }
 
     /// Copy on the heap.

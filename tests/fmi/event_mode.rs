@@ -121,7 +121,9 @@ fn clocks_are_refused_where_they_make_no_sense() {
 fn units_without_ticks_have_no_event_mode() {
     let recorder = Recorder::default();
     assert!(co_simulation(PLANT, EVENTS, recorder.environment()).is_null());
-    assert!(recorder.messages().last().unwrap().text.contains("does not offer event mode"));
+    assert!(
+        recorder.messages().last().unwrap().text.contains("does not offer co-simulation with event mode")
+    );
     for unit in [PLANT, CONTROLLER] {
         let component = Component::in_phase(Standard::Fmi3, unit, Phase::Step);
         component.assert_refused(component.enter_event_mode(), &["fmi3EnterEventMode: not offered"]);

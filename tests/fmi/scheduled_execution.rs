@@ -9,8 +9,10 @@ use maglev_fmu::fmi::fmi3::*;
 use super::harness::clocked::sampled_units;
 use super::harness::{CONTROLLER, Component, ERROR, OK};
 
+type Timing = ([f64; 2], [(u64, u64); 2], [i32; 2]);
+
 /// Interval and shift of `tick`: as decimals, as fractions, and the qualifiers.
-fn timing(component: &Component) -> Option<([f64; 2], [(u64, u64); 2], [i32; 2])> {
+fn timing(component: &Component) -> Option<Timing> {
     let tick = component.clocks()[0];
     let (mut interval, mut shift, mut qualifiers) = (0.0, 0.0, [7; 2]);
     let mut fractions = [(0, 0); 2];

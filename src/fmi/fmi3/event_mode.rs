@@ -1,4 +1,4 @@
-//! FMI 3.0: event mode.
+//! FMI 3.0: event mode, of model exchange and of co-simulation.
 #![allow(non_snake_case, reason = "the names are the standard's")]
 
 use super::legality as may;
@@ -13,7 +13,7 @@ pub unsafe extern "C" fn fmi3EnterEventMode(instance: fmi3Instance) -> fmi3Statu
     unsafe { enter(instance, &may::ENTER_EVENT_MODE, |instance| instance.enter_event_mode()) }
 }
 
-/// Runs the tick that is due. Another event iteration then shows its results.
+/// Discrete transitions of an event; of a sampled unit the tick that is due.
 ///
 /// # Safety
 /// A live handle, used by one thread at a time; the results are null or writable.
@@ -34,9 +34,9 @@ pub unsafe extern "C" fn fmi3UpdateDiscreteStates(
             report(discrete_states_need_update, end.is_unfinished.into());
             report(terminate_simulation, FMI3_FALSE);
             report(nominals_of_continuous_states_changed, FMI3_FALSE);
-            report(values_of_continuous_states_changed, FMI3_FALSE);
-            report(next_event_time_defined, FMI3_TRUE);
-            report(next_event_time, end.next_event_time);
+            report(values_of_continuous_states_changed, end.have_states_changed.into());
+            report(next_event_time_defined, end.next_event_time.is_some().into());
+            report(next_event_time, end.next_event_time.unwrap_or_default());
             Ok(())
         })
     }

@@ -5,11 +5,11 @@ use core::ffi::c_char;
 
 use super::legality as may;
 use super::types::*;
+use crate::fmi::Interface;
 use crate::fmi::boundary::{create, enter, free, input};
 use crate::fmi::instance::instantiate;
 use crate::fmi::intermediate_update::IntermediateUpdate;
 use crate::fmi::log::{Callback, c_string, set_debug_logging};
-use crate::fmi::ticking::Ticking;
 
 /// "3.0".
 #[unsafe(no_mangle)]
@@ -65,13 +65,12 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
     let log = callback(log_message, environment);
     let function = "fmi3InstantiateCoSimulation";
     let may_return_early = early_return_allowed != FMI3_FALSE;
-    let ticking = match event_mode_used {
-        FMI3_FALSE => Ticking::InSteps,
-        _ => Ticking::AtEvents { may_return_early },
+    let interface = match event_mode_used {
+        FMI3_FALSE => Interface::CoSimulation,
+        _ => Interface::CoSimulationWithEvents { may_return_early },
     };
     create(|| {
-        let mut instance = instantiate(function, name, token, log, logging_on != FMI3_FALSE, None)?
-            .ticking(function, ticking)?;
+        let mut instance = instantiate(function, name, token, log, logging_on != FMI3_FALSE, Ok(interface))?;
         // An importer without intermediate variables does not intend to use intermediate update (section 2.3.1), but
         // has it early return to ask for.
         let is_of_use = required_intermediate_variable_count > 0 || may_return_early;
@@ -82,7 +81,8 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
     })
 }
 
-/// Not offered: returns null and logs why.
+/// Makes a model-exchange instance of the unit that `token` selects; null and a log message if there is none or if it
+/// is a sampled one.
 ///
 /// # Safety
 /// As [`fmi3InstantiateCoSimulation`].
@@ -100,7 +100,9 @@ pub unsafe extern "C" fn fmi3InstantiateModelExchange(
     let (name, token) = unsafe { (c_string(instance_name), c_string(token)) };
     let callback = callback(log_message, environment);
     let function = "fmi3InstantiateModelExchange";
-    create(|| instantiate(function, name, token, callback, logging_on != FMI3_FALSE, Some("model exchange")))
+    create(|| {
+        instantiate(function, name, token, callback, logging_on != FMI3_FALSE, Ok(Interface::ModelExchange))
+    })
 }
 
 /// Makes an instance of the sampled unit that `token` selects for a scheduler; null and a log message if there is none.
@@ -125,8 +127,8 @@ pub unsafe extern "C" fn fmi3InstantiateScheduledExecution(
     let log = callback(log_message, environment);
     let function = "fmi3InstantiateScheduledExecution";
     create(|| {
-        let mut instance = instantiate(function, name, token, log, logging_on != FMI3_FALSE, None)?
-            .ticking(function, Ticking::OnActivation)?;
+        let interface = Ok(Interface::ScheduledExecution);
+        let mut instance = instantiate(function, name, token, log, logging_on != FMI3_FALSE, interface)?;
         instance.clock_update = clock_update.map(|callback| (callback, environment));
         Some(instance)
     })

@@ -4,8 +4,8 @@ mod elements;
 
 pub use elements::ModelDescription;
 use elements::{
-    ClockAttributes, CoSimulation, ModelStructure, ModelVariables, ScheduledExecution, Type, TypeDefinitions,
-    TypedVariable, Unknown, VariableAttributes,
+    ClockAttributes, CoSimulation, ModelExchange, ModelStructure, ModelVariables, ScheduledExecution, Type,
+    TypeDefinitions, TypedVariable, Unknown, VariableAttributes,
 };
 
 use super::common::{
@@ -32,6 +32,7 @@ impl ModelDescription {
             generation_tool: GENERATION_TOOL,
             generation_time: time.map(|time| time.to_string()),
             variable_naming_convention: "structured",
+            model_exchange: description.offers_model_exchange().then(|| ModelExchange::new(description)),
             co_simulation: CoSimulation::new(description),
             scheduled_execution: ScheduledExecution::new(description),
             unit_definitions: UnitDefinitions::new(description),
@@ -47,6 +48,24 @@ impl ModelDescription {
                     .collect(),
             },
             model_structure: ModelStructure::new(description),
+        }
+    }
+}
+
+impl ModelExchange {
+    fn new(description: &Description) -> Self {
+        let can = Capabilities::of(description);
+        Self {
+            model_identifier: description.name,
+            needs_execution_tool: can.needs_execution_tool,
+            can_be_instantiated_only_once_per_process: can.can_be_instantiated_only_once_per_process,
+            can_get_and_set_fmu_state: can.can_get_and_set_fmu_state,
+            can_serialize_fmu_state: can.can_serialize_fmu_state,
+            provides_directional_derivatives: can.provides_directional_derivatives,
+            provides_adjoint_derivatives: can.provides_adjoint_derivatives,
+            provides_per_element_dependencies: can.provides_per_element_dependencies,
+            needs_completed_integrator_step: can.needs_completed_integrator_step,
+            provides_evaluate_discrete_states: can.provides_evaluate_discrete_states,
         }
     }
 }
@@ -77,7 +96,7 @@ impl CoSimulation {
 impl ScheduledExecution {
     fn new(description: &Description) -> Option<Self> {
         let can = Capabilities::of(description);
-        can.offers_scheduled_execution.then(|| Self {
+        can.offers_scheduled_execution.then_some(Self {
             model_identifier: description.name,
             needs_execution_tool: can.needs_execution_tool,
             can_be_instantiated_only_once_per_process: can.can_be_instantiated_only_once_per_process,
@@ -139,6 +158,8 @@ impl TypedVariable {
             minimum,
             maximum,
             start: roles::start(variable),
+            derivative: roles::derivative_of(description, variable),
+            reinit: roles::reinit(variable),
         };
         match variable.kind {
             Kind::Real(quantity) => Self::Float64(attributes(Some(quantity.name))),
@@ -149,28 +170,44 @@ impl TypedVariable {
     }
 }
 
+/// Clocks that the unit activates: a tick of the input clocks is one of theirs.
+fn output_clocks(description: &Description) -> impl Iterator<Item = Unknown> {
+    let clocks = |is_input| {
+        let clocks = description.clocks().filter(move |(_, clock)| clock.is_input == is_input);
+        clocks.map(|(reference, _)| reference)
+    };
+    clocks(false).map(move |value_reference| Unknown {
+        value_reference,
+        dependencies: clocks(true).map(|reference| reference.to_string()).collect::<Vec<_>>().join(" "),
+        dependencies_kind: Some(clocks(true).map(|_| "dependent").collect::<Vec<_>>().join(" ")),
+    })
+}
+
 impl ModelStructure {
     fn new(description: &Description) -> Self {
-        let unknown = |value_reference, dependencies: &[usize]| Unknown {
+        let unknown = |value_reference, dependencies: roles::Dependencies| Unknown {
             value_reference,
-            dependencies: roles::joined(dependencies),
-            dependencies_kind: roles::dependencies_kind(dependencies.len()),
+            dependencies: dependencies.list(0),
+            dependencies_kind: dependencies.kind_list(),
         };
-        let clocks = |is_input| {
-            let clocks = description.clocks().filter(move |(_, clock)| clock.is_input == is_input);
-            clocks.map(|(reference, _)| reference)
-        };
-        let (input_clocks, output_clocks) = (clocks(true).collect::<Vec<_>>(), clocks(false));
+        let at_an_instant =
+            |reference| unknown(reference, roles::Dependencies::at_an_instant(description, reference, true));
         Self {
-            // Outputs change in a step only: at a communication point they depend on nothing.
-            // A tick of the input clock is one of the output clock.
             outputs: roles::outputs(description)
-                .map(|reference| unknown(reference, &[]))
-                .chain(output_clocks.map(|reference| unknown(reference, &input_clocks)))
+                .map(at_an_instant)
+                .chain(output_clocks(description))
                 .collect(),
+            derivatives: roles::derivatives(description).map(at_an_instant).collect(),
             initial_unknowns: roles::initial_unknowns(description)
-                .map(|(reference, dependencies)| unknown(reference, &dependencies))
+                .map(|(reference, dependencies)| unknown(reference, dependencies))
+                // No clock is active during initialisation.
+                .chain(output_clocks(description).map(|clock| Unknown {
+                    dependencies: String::new(),
+                    dependencies_kind: None,
+                    ..clock
+                }))
                 .collect(),
+            event_indicators: description.event_indicators().map(at_an_instant).collect(),
         }
     }
 }
