@@ -43,15 +43,6 @@ impl Interface {
         }
     }
 
-    /// Phase after initialisation.
-    pub(super) fn first_phase(self) -> Phase {
-        match self {
-            Self::CoSimulation => Phase::StepMode,
-            Self::CoSimulationWithEvents { .. } | Self::ModelExchange => Phase::EventMode,
-            Self::ScheduledExecution => Phase::ClockActivationMode,
-        }
-    }
-
     /// Whether an instance can be in `phase` between two calls.
     pub(super) fn reaches(self, phase: Phase) -> bool {
         match phase {
@@ -61,6 +52,15 @@ impl Interface {
             Phase::ContinuousTimeMode => self == Self::ModelExchange,
             Phase::ClockActivationMode => self == Self::ScheduledExecution,
             _ => false,
+        }
+    }
+
+    /// Phase after initialisation.
+    pub(super) fn first_phase(self) -> Phase {
+        match self {
+            Self::CoSimulation => Phase::StepMode,
+            Self::CoSimulationWithEvents { .. } | Self::ModelExchange => Phase::EventMode,
+            Self::ScheduledExecution => Phase::ClockActivationMode,
         }
     }
 }

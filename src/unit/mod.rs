@@ -88,16 +88,16 @@ pub trait Unit: Persistent + Send {
         None
     }
 
+    /// The unit as one that an importer may integrate, if it is.
+    fn continuous(&mut self) -> Option<&mut dyn ContinuousUnit> {
+        None
+    }
+
     /// Whether what the unit has computed from its parameters still belongs to them, once it is initialised. Asked of
     /// units read from bytes only, which anybody may have written; a unit answers for whatever could make it panic
     /// or compute without end.
     fn is_consistent(&self) -> bool {
         true
-    }
-
-    /// The unit as one that an importer may integrate, if it is.
-    fn continuous(&mut self) -> Option<&mut dyn ContinuousUnit> {
-        None
     }
 
     /// Copy on the heap.

@@ -60,7 +60,7 @@ fn steps_end_at_ticks() {
         assert!(!step.is_event && !step.is_early);
         // An event for any other reason runs no tick.
         assert_eq!(component.enter_event_mode(), OK);
-        let update = component.update_discrete_states();
+        let update = component.end_event_iteration();
         assert_eq!(update, Update { status: OK, is_unfinished: false, next_event_time: Some(3.0 * period) });
         assert_eq!(component.get("tick_time"), 2.0 * period);
     }
@@ -78,14 +78,14 @@ fn the_output_clock_is_active_once_the_outputs_are_new() {
         assert_eq!(component.get_clock(tick), (OK, 1));
         assert_eq!(component.snapshot(), before, "nothing happens before the end of the iteration");
 
-        let update = component.update_discrete_states();
+        let update = component.end_event_iteration();
         assert!(update.is_unfinished);
         assert_eq!([component.get_clock(tick), component.get_clock(ticked)], [(OK, 0), (OK, 1)]);
         assert_ne!(component.snapshot(), before);
         // A second activation at this instant changes nothing.
         let after = component.snapshot();
         assert_eq!(component.set_clock(tick, 1), OK);
-        let update = component.update_discrete_states();
+        let update = component.end_event_iteration();
         assert!(!update.is_unfinished);
         assert_eq!(component.snapshot(), after);
         assert_eq!([component.get_clock(tick), component.get_clock(ticked)], [(OK, 0), (OK, 0)]);
@@ -140,7 +140,7 @@ fn the_phase_decides_what_may_be_called() {
     assert_eq!(component.set("controller.k2", 1.0), OK);
     component.assert_refused(component.set("sample_time", 0.1), &["a fixed parameter"]);
     assert_eq!(component.enter_step_mode(), OK);
-    component.assert_refused(component.update_discrete_states().status, &["step mode"]);
+    component.assert_refused(component.end_event_iteration().status, &["step mode"]);
     component.assert_refused(component.enter_step_mode(), &["step mode"]);
     // SAFETY: a live handle.
     let status = unsafe { fmi3EvaluateDiscreteStates(component.handle) };
@@ -158,13 +158,13 @@ fn the_phase_decides_what_may_be_called() {
     assert_eq!(component.terminate(), OK);
     assert_eq!(component.reset(), OK);
     component.initialise(0.0);
-    assert!(component.update_discrete_states().is_unfinished, "the first tick, again");
+    assert!(component.end_event_iteration().is_unfinished, "the first tick, again");
 }
 
 #[test]
 fn a_start_between_two_ticks_waits_for_the_next_one() {
     let component = initialised(CONTROLLER, 0.0025);
-    let update = component.update_discrete_states();
+    let update = component.end_event_iteration();
     assert_eq!((update.is_unfinished, update.next_event_time), (false, Some(0.003)));
     assert_eq!(component.enter_step_mode(), OK);
     let step = component.step_to_event(0.0025, 0.1);
@@ -190,7 +190,7 @@ fn a_state_saved_at_an_event_goes_on_with_the_event() {
     let [tick, ticked] = component.clocks();
     assert_eq!(component.set_clock(tick, 1), OK);
     let set = component.saved_bytes();
-    component.update_discrete_states();
+    component.end_event_iteration();
     let has_ticked = component.saved_bytes();
     assert_eq!(component.restore_bytes(&set), OK);
     assert_eq!([component.get_clock(tick), component.get_clock(ticked)], [(OK, 1), (OK, 0)]);

@@ -89,17 +89,12 @@ impl Component {
         Step { status, is_event: event != 0, is_early: early != 0, reached }
     }
 
-    pub fn enter_event_mode(&self) -> i32 {
-        // SAFETY: a live handle.
-        unsafe { fmi3EnterEventMode(self.handle) }
-    }
-
     pub fn enter_step_mode(&self) -> i32 {
         // SAFETY: a live handle.
         unsafe { fmi3EnterStepMode(self.handle) }
     }
 
-    pub fn update_discrete_states(&self) -> Update {
+    pub fn end_event_iteration(&self) -> Update {
         let (mut need, mut terminate, mut nominals, mut states, mut defined) = (7, 7, 7, 7, 7);
         let mut next = f64::NAN;
         // SAFETY: a live handle, room for the results.
@@ -123,7 +118,7 @@ impl Component {
     /// Event iterations until there is nothing left to do; the time of the next event.
     pub fn settle_event(&self) -> f64 {
         loop {
-            let update = self.update_discrete_states();
+            let update = self.end_event_iteration();
             assert_eq!(update.status, OK, "{:?}", self.recorder.messages());
             if !update.is_unfinished {
                 return update.next_event_time.unwrap();

@@ -3,6 +3,7 @@
 
 mod access;
 pub mod clocked;
+mod exchange;
 mod instantiate;
 mod recorder;
 mod state;
@@ -16,6 +17,8 @@ use maglev_fmu::fmi::fmi3::types::fmi3Boolean;
 use maglev_fmu::fmi::fmi3::*;
 use maglev_fmu::unit::{Description, UNITS};
 
+#[allow(unused_imports, reason = "each test binary uses a part")]
+pub use exchange::plants;
 pub use instantiate::{instantiate, instantiate_with};
 pub use recorder::{Message, Recorder, fmi2_logger, fmi3_logger};
 pub use state::State;
@@ -196,7 +199,7 @@ impl Component {
         }
     }
 
-    fn plain(
+    pub fn plain(
         &self,
         fmi2: unsafe extern "C" fn(*mut c_void) -> i32,
         fmi3: unsafe extern "C" fn(*mut c_void) -> i32,
