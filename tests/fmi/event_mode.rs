@@ -81,7 +81,11 @@ fn the_output_clock_is_active_once_the_outputs_are_new() {
         let update = component.end_event_iteration();
         assert!(update.is_unfinished);
         assert_eq!([component.get_clock(tick), component.get_clock(ticked)], [(OK, 0), (OK, 1)]);
-        assert_ne!(component.snapshot(), before);
+        assert_eq!(
+            component.snapshot() != before,
+            unit != "MaglevRigController",
+            "which starts from its inputs"
+        );
         // A second activation at this instant changes nothing.
         let after = component.snapshot();
         assert_eq!(component.set_clock(tick, 1), OK);

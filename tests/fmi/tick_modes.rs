@@ -9,8 +9,8 @@ use maglev_fmu::unit::variable::{Causality, Kind};
 use super::harness::clocked::{Choices, sampled_units};
 use super::harness::{Component, OK, Standard};
 
-const SAMPLE_TIME: f64 = 1e-3;
-const DURATION: f64 = 1.5;
+/// \[s\]
+const DURATION: f64 = 1.0;
 /// Fractions, multiples and neither; one as importers compute it.
 const STEP_SIZES: [f64; 5] = [1e-3, 2.5e-4, 3.7e-3, 1.0 / 60.0, 0.0009999999999999998];
 
@@ -90,6 +90,7 @@ fn run(mode: Mode, unit: &str, step_size: f64) -> Vec<Vec<u64>> {
     let component = instance(mode, unit);
     component.initialise(0.0);
     let steps = (DURATION / step_size) as u32;
+    let period = component.get("sample_time");
     let has_events = matches!(mode, Mode::Events | Mode::EventsAndClocks | Mode::EventsWithoutEarlyReturn);
     let mut ticks = 0;
     let mut rows = Vec::new();
@@ -114,8 +115,8 @@ fn run(mode: Mode, unit: &str, step_size: f64) -> Vec<Vec<u64>> {
         match mode {
             Mode::Scheduled => {
                 // Ticks in the half-open interval; a tick that the end misses by rounding belongs to the next step.
-                while f64::from(ticks) * SAMPLE_TIME < end - 1e-4 * SAMPLE_TIME {
-                    assert_eq!(component.activate(f64::from(ticks) * SAMPLE_TIME), OK);
+                while f64::from(ticks) * period < end - 1e-4 * period {
+                    assert_eq!(component.activate(f64::from(ticks) * period), OK);
                     ticks += 1;
                 }
             }
