@@ -461,6 +461,7 @@ fn structure_lists_outputs_and_initial_unknowns_exactly() {
                     let kind = match dependency.kind {
                         DependencyKind::Constant => "constant",
                         DependencyKind::Fixed => "fixed",
+                        DependencyKind::Discrete => "discrete",
                         DependencyKind::Dependent => "dependent",
                     };
                     (dependency.name, kind)

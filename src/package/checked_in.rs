@@ -105,7 +105,7 @@ mod tests {
         let readme = format!("# Title\n\n{BEGIN}\nold\n{END}\n\nMore.\n");
         let renewed = readme_with_tables(&readme).unwrap();
         assert!(renewed.starts_with("# Title\n\n") && renewed.ends_with("\n\nMore.\n"));
-        assert!(!renewed.contains("old"));
+        assert!(!renewed.contains("\nold\n"));
         assert!(renewed.contains("| `observer.kind` | parameter | enumeration | newton |"));
         assert!(renewed.contains("epsilon x3 + x3 \\|x3\\| |"));
         assert_eq!(readme_with_tables(&renewed).as_deref(), Some(renewed.as_str()));

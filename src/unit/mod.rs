@@ -3,6 +3,7 @@
 
 pub mod continuous;
 pub mod description;
+mod end_stop_events;
 mod levitated_ball;
 mod levitated_ball_controller;
 mod levitated_ball_plant;
@@ -64,6 +65,8 @@ impl Journal for Silence {
 /// Why a unit refused to run; it is left as it was before the call.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum UnitError {
+    #[error("an input with a slope leaves its range within the step: {0}")]
+    InputLeavesRange(value::ValueError),
     #[error("{name} would become {value} {unit} within the step: expected a finite number")]
     Diverged { name: &'static str, value: f64, unit: &'static str },
     #[error("{ticks} ticks within one step of {duration} s: expected at most {limit}")]

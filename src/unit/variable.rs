@@ -61,6 +61,8 @@ pub enum DependencyKind {
     Constant,
     /// Times a number that follows from fixed parameters.
     Fixed,
+    /// Times a number that changes at events and with parameters only.
+    Discrete,
     /// In no particular way.
     Dependent,
 }
@@ -79,6 +81,10 @@ impl Dependency {
 
     pub const fn fixed(name: &'static str) -> Self {
         Self { name, kind: DependencyKind::Fixed }
+    }
+
+    pub const fn discrete(name: &'static str) -> Self {
+        Self { name, kind: DependencyKind::Discrete }
     }
 
     pub const fn dependent(name: &'static str) -> Self {

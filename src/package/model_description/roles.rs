@@ -106,6 +106,7 @@ impl Dependencies {
             let kind = match dependency.kind {
                 DependencyKind::Constant => "constant",
                 DependencyKind::Fixed => "fixed",
+                DependencyKind::Discrete => "discrete",
                 DependencyKind::Dependent => "dependent",
             };
             (with_parameters || row.causality != Causality::Parameter).then_some((known, kind))
