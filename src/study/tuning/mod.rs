@@ -1,0 +1,4 @@
+//! Tuning of the maglev rig's observers by particle swarm.
+
+pub mod settings;
+pub mod swarm;
