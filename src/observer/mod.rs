@@ -1,7 +1,10 @@
 //! State estimators, one per file, and what they share.
 
 mod bearing_observer;
+pub mod extended_state;
+pub mod extended_state_exact;
 pub mod factored_covariance;
+pub mod han_function;
 pub mod kalman;
 mod least_squares_window;
 pub mod newton;
