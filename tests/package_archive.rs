@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use maglev_fmu::package::{
     FmiVersion, GenerationTime, Library, PackageError, build, icon_png, model_description,
 };
-use maglev_fmu::unit::UNITS;
+use maglev_fmu::unit::{StartValues, UNITS};
 use zip::ZipArchive;
 
 const TIME: u32 = 1_234_567_891;
@@ -96,7 +96,7 @@ fn archives_hold_what_the_standards_name() {
             assert_eq!(names, expected);
 
             let time = Some(GenerationTime::from_epoch_seconds(TIME));
-            let description = model_description(unit.description, version, time).unwrap();
+            let description = model_description(unit.description, StartValues::TABLE, version, time).unwrap();
             assert_eq!(file(&mut archive, "modelDescription.xml"), description.as_bytes());
             assert!(file(&mut archive, icons[0]).starts_with(b"\x89PNG\r\n\x1a\n"));
             let page = String::from_utf8(file(&mut archive, "documentation/index.html")).unwrap();

@@ -40,7 +40,7 @@ impl CommandLine {
                 build.run()?;
                 reproduce::reproduce(EXPERIMENTS.iter(), build.out(), reproduce::RESULTS.as_ref())
             }
-            Some(Command::Build(command)) => Ok(command.run()?),
+            Some(Command::Build(command)) => command.run(),
             Some(Command::Reproduce(command)) => command.run(),
             Some(Command::Describe(command)) => Ok(command.run()?),
             Some(Command::Trace(command)) => command.run(),

@@ -4,8 +4,9 @@ use core::ffi::CStr;
 use core::fmt;
 
 use super::{CallError, Callback, CommunicationPoint, Function, Logger, Phase};
+use crate::unit::start_values::read_token;
 use crate::unit::variable::Variable;
-use crate::unit::{Journal, TIME, Topic, UNITS, Unit};
+use crate::unit::{Journal, TIME, Topic, Unit};
 
 /// What a handle (`fmi2Component`, `fmi3Instance`) points to.
 pub struct Instance {
@@ -123,7 +124,7 @@ impl Instance {
     }
 }
 
-/// Makes an instance of the unit whose token is `token`, or logs why not. `refused_interface` names the interface
+/// Makes an instance of the unit whose token is `token`, with the start values in it, or logs why not. `refused_interface` names the interface
 /// type that was asked for when it is not the one on offer.
 pub(super) fn instantiate(
     function: &str,
@@ -139,24 +140,16 @@ pub(super) fn instantiate(
         return None;
     }
     let token = token.unwrap_or_default().to_str().unwrap_or_default();
-    let Some(unit) = UNITS.iter().find(|unit| unit.description.token().as_str() == token) else {
-        logger
-            .error(format_args!("{function}: the token \"{token}\" is none of this library: {KnownTokens}"));
-        return None;
+    let (unit, start_values) = match read_token(token) {
+        Ok(found) => found,
+        Err(error) => {
+            logger.error(format_args!("{function}: {error}"));
+            return None;
+        }
     };
-    let mut instance = Instance::new((unit.create)(), logger);
+    let mut made = (unit.create)();
+    start_values.apply(&mut *made);
+    let mut instance = Instance::new(made, logger);
     instance.note(format_args!("{} instantiated", unit.description.name));
     Some(instance)
-}
-
-/// All units with their tokens, for an error message.
-struct KnownTokens;
-
-impl fmt::Display for KnownTokens {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str("expected")?;
-        UNITS.iter().try_for_each(|unit| {
-            write!(formatter, " {} for {}", unit.description.token().as_str(), unit.description.name)
-        })
-    }
 }

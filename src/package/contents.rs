@@ -6,7 +6,7 @@ use super::documentation::documentation;
 use super::icon::{icon_png, icon_svg};
 use super::model_description::{model_description, terminals_and_icons};
 use super::{FmiVersion, GenerationTime, Library, PackageError, licenses};
-use crate::unit::Description;
+use crate::unit::{Description, StartValues};
 
 /// A file of a package.
 #[derive(Clone, Debug)]
@@ -21,14 +21,15 @@ pub struct Entry<'a> {
 /// All files of the package of one unit, sorted by path.
 pub fn contents<'a>(
     description: &'static Description,
+    start_values: &StartValues,
     version: FmiVersion,
     time: GenerationTime,
     libraries: &'a [Library],
 ) -> Result<Vec<Entry<'a>>, PackageError> {
     let name = description.name;
     let mut files: Vec<(&str, Cow<'a, [u8]>)> = vec![
-        ("modelDescription.xml", owned(model_description(description, version, Some(time))?)),
-        ("documentation/index.html", owned(documentation(description, version, Some(time)))),
+        ("modelDescription.xml", owned(model_description(description, start_values, version, Some(time))?)),
+        ("documentation/index.html", owned(documentation(description, start_values, version, Some(time)))),
         ("documentation/licenses/license.txt", Cow::Borrowed(licenses::LICENSE.as_bytes())),
         ("documentation/licenses/THIRD-PARTY.txt", Cow::Borrowed(licenses::THIRD_PARTY.as_bytes())),
         ("documentation/licenses/Apache-2.0.txt", Cow::Borrowed(licenses::APACHE_2_0.as_bytes())),

@@ -14,6 +14,7 @@ mod icon;
 mod library;
 mod licenses;
 mod model_description;
+pub mod parameter_file;
 mod platform;
 mod variable_text;
 
@@ -30,9 +31,10 @@ pub use generation_time::GenerationTime;
 pub use icon::{icon_png, icon_svg};
 pub use library::Library;
 pub use model_description::model_description;
+pub use parameter_file::ParameterFile;
 pub use platform::Platform;
 
-use crate::unit::UNITS;
+use crate::unit::{Description, StartValues, UNITS};
 
 /// A file that was written.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -50,6 +52,17 @@ pub fn build(
     libraries: &[Library],
     time: GenerationTime,
 ) -> Result<Vec<WrittenFile>, PackageError> {
+    build_with(directory, &[], libraries, time)
+}
+
+/// As [`build`], with other start values for some units: their model descriptions say so, and so do their tokens, by
+/// which the library knows.
+pub fn build_with(
+    directory: &Path,
+    start_values: &[(&'static Description, StartValues)],
+    libraries: &[Library],
+    time: GenerationTime,
+) -> Result<Vec<WrittenFile>, PackageError> {
     let mut written = Vec::new();
     for version in FmiVersion::ALL {
         let directory = directory.join(version.directory());
@@ -57,7 +70,10 @@ pub fn build(
             .map_err(|source| PackageError::Write { path: directory.clone(), source })?;
         for unit in UNITS {
             let path = directory.join(unit.description.name).with_extension("fmu");
-            let entries = contents(unit.description, version, time, libraries)?;
+            let own =
+                start_values.iter().find(|(description, _)| std::ptr::eq(*description, unit.description));
+            let own = own.map_or(StartValues::TABLE, |(_, values)| values);
+            let entries = contents(unit.description, own, version, time, libraries)?;
             let bytes = archive(&entries, time)
                 .map_err(|source| PackageError::Archive { path: path.clone(), source })?;
             replace_file(&path, &bytes)?;

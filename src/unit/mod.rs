@@ -7,6 +7,7 @@ mod magnetic_bearing_controller;
 mod magnetic_bearing_plant;
 pub mod quantity;
 pub mod sample_clock;
+pub mod start_values;
 pub mod system;
 pub mod value;
 pub mod variable;
@@ -16,6 +17,7 @@ use core::fmt;
 pub use description::{Description, Token};
 pub use magnetic_bearing_controller::MagneticBearingController;
 pub use magnetic_bearing_plant::MagneticBearingPlant;
+pub use start_values::StartValues;
 pub use system::System;
 use thiserror::Error;
 

@@ -14,16 +14,20 @@ use super::common::{
 };
 use super::roles;
 use crate::package::{Capabilities, FmiVersion, GenerationTime, licenses};
-use crate::unit::Description;
 use crate::unit::variable::{Kind, Variable};
+use crate::unit::{Description, StartValues};
 
 impl ModelDescription {
-    pub fn new(description: &'static Description, time: Option<GenerationTime>) -> Self {
+    pub fn new(
+        description: &'static Description,
+        start_values: &StartValues,
+        time: Option<GenerationTime>,
+    ) -> Self {
         let variables = description.variables.iter().enumerate();
         Self {
             fmi_version: FmiVersion::Three.text(),
             model_name: description.name,
-            instantiation_token: description.token().as_str().to_owned(),
+            instantiation_token: start_values.token(description),
             description: description.summary,
             version: VERSION,
             copyright: licenses::COPYRIGHT,
@@ -38,7 +42,7 @@ impl ModelDescription {
             default_experiment: DefaultExperiment::new(description),
             model_variables: ModelVariables {
                 variables: variables
-                    .map(|(reference, variable)| TypedVariable::new(reference, variable))
+                    .map(|(reference, variable)| TypedVariable::new(reference, variable, start_values))
                     .collect(),
             },
             model_structure: ModelStructure::new(description),
@@ -89,7 +93,7 @@ impl TypeDefinitions {
 }
 
 impl TypedVariable {
-    fn new(value_reference: usize, variable: &Variable) -> Self {
+    fn new(value_reference: usize, variable: &Variable, start_values: &StartValues) -> Self {
         let [minimum, maximum] = roles::range(variable);
         let attributes = |declared_type| VariableAttributes {
             name: variable.name,
@@ -101,7 +105,7 @@ impl TypedVariable {
             declared_type,
             minimum,
             maximum,
-            start: roles::start(variable),
+            start: roles::start(variable, start_values.of(value_reference, variable)),
         };
         match variable.kind {
             Kind::Real(quantity) => Self::Float64(attributes(Some(quantity.name))),
