@@ -9,6 +9,7 @@ pub mod kalman;
 mod least_squares_window;
 pub mod newton;
 pub mod reduced_newton;
+pub mod sampled_extended_state;
 mod square_window;
 mod step_length;
 pub mod windowed_newton;
