@@ -11,6 +11,7 @@ mod error;
 mod loop_packages;
 pub mod output;
 pub mod report;
+pub mod rig;
 pub mod tuning;
 
 use std::path::Path;
