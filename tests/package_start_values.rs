@@ -13,7 +13,12 @@ const VALUES: [(&str, f64); 3] =
 
 /// Packages whose controller starts with [`VALUES`].
 fn packages() -> tempfile::TempDir {
-    let file = ParameterFile::new(CONTROLLER.description, &VALUES, json!({ "by": "hand" })).unwrap();
+    let file = ParameterFile::new(
+        CONTROLLER.description,
+        VALUES.map(|(name, value)| (name, value.into())),
+        json!(null),
+    )
+    .unwrap();
     let directory = tempfile::tempdir().unwrap();
     let library = Library::of_this_build().unwrap();
     let time = GenerationTime::of_this_build().unwrap();

@@ -62,20 +62,17 @@ fn unit_names() -> String {
 }
 
 impl ParameterFile {
-    /// From variables of a unit and their values.
-    pub fn new(
+    /// From variables of a unit and their values, of enumerations the name or number of an item.
+    pub fn new<'a>(
         description: &'static Description,
-        assignments: &[(&str, f64)],
+        assignments: impl IntoIterator<Item = (&'a str, Value)>,
         provenance: Value,
     ) -> Result<Self, ParameterFileError> {
-        let mut checked = StartValues::default();
         let (mut values, mut units) = (Map::new(), Map::new());
-        for &(name, value) in assignments {
-            checked.set(description, name, value)?;
-            if let Some((_, variable)) = description.find(name) {
-                values.insert(name.to_owned(), number(variable, value));
-                units.insert(name.to_owned(), unit_text(variable, value).into());
-            }
+        for (name, value) in assignments {
+            let (variable, value) = checked(description, name, &value)?;
+            values.insert(name.to_owned(), number(variable, value));
+            units.insert(name.to_owned(), unit_text(variable, value).into());
         }
         Ok(Self { unit: description.name.to_owned(), values, units, provenance })
     }
@@ -102,10 +99,7 @@ impl ParameterFile {
             .ok_or_else(|| ParameterFileError::UnknownUnit { name: self.unit.clone() })?;
         let mut start_values = StartValues::default();
         for (name, value) in &self.values {
-            let variable = description.find(name).map(|(_, variable)| variable).ok_or_else(|| {
-                StartValueError::UnknownVariable { unit: description.name, name: name.clone() }
-            })?;
-            let number = read_number(variable, value)?;
+            let (variable, number) = checked(description, name, value)?;
             start_values.set(description, name, number)?;
             if let Some(given) = self.units.get(name) {
                 let expected = unit_text(variable, number);
@@ -132,6 +126,19 @@ impl std::fmt::Display for ParameterFile {
         };
         formatter.write_str(&text.map_err(|_| std::fmt::Error)?)
     }
+}
+
+/// The variable called `name` and the value as a number that it may start with.
+fn checked(
+    description: &'static Description,
+    name: &str,
+    value: &Value,
+) -> Result<(&'static Variable, f64), ParameterFileError> {
+    let unknown = || StartValueError::UnknownVariable { unit: description.name, name: name.to_owned() };
+    let (_, variable) = description.find(name).ok_or_else(unknown)?;
+    let number = read_number(variable, value)?;
+    StartValues::default().set(description, name, number)?;
+    Ok((variable, number))
 }
 
 fn number(variable: &Variable, value: f64) -> Value {
@@ -204,7 +211,8 @@ mod tests {
         assert_eq!(read, written);
         assert_eq!(read.units["observer.kind"], "item kalman");
         let (description, values) = read.start_values().unwrap();
-        for (name, expected) in assignments {
+        assert_eq!(read.values["observer.kind"], 4);
+        for (name, _, expected) in assignments {
             let (reference, variable) = description.find(name).unwrap();
             assert_eq!(values.of(reference, variable).to_bits(), f64::to_bits(expected), "{name}");
         }

@@ -38,16 +38,13 @@ pub enum Reference {
 impl Reference {
     /// r - y0 \[V\] at a time \[s\].
     pub fn at(self, time: f64) -> f64 {
-        let sine = |amplitude: f64, frequency: f64| {
-            amplitude * libm::sin(core::f64::consts::TAU * frequency * time)
-        };
+        let sine =
+            |amplitude: f64, frequency: f64| amplitude * libm::sin(core::f64::consts::TAU * frequency * time);
         match self {
             Self::Hold => 0.0,
             Self::Sine => sine(0.15, 0.5),
             // Half a sample early, so that the rounding of the time does not matter.
-            Self::SineAndStep => {
-                sine(0.15, 0.5) + if time > 2.0 - 0.5 * SAMPLE_TIME { 0.1 } else { 0.0 }
-            }
+            Self::SineAndStep => sine(0.15, 0.5) + if time > 2.0 - 0.5 * SAMPLE_TIME { 0.1 } else { 0.0 },
             Self::FastSine => sine(0.05, 3.0),
         }
     }

@@ -5,6 +5,8 @@ use crate::observer::extended_state::{
 };
 
 use super::swarm::Range;
+use crate::host::Value;
+use crate::study::loop_packages::Parameter;
 
 /// Which observer is tuned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -133,6 +135,35 @@ impl Candidate {
                     injection: NonlinearInjection::new(gains, exponents, linear_zones),
                     input_gain,
                 })
+            }
+        }
+    }
+}
+
+impl Candidate {
+    /// As parameters of the controller unit.
+    pub fn parameters(&self) -> Vec<Parameter<'static>> {
+        const GAINS: [&str; 3] = ["observer.gain[1]", "observer.gain[2]", "observer.gain[3]"];
+        const EXPONENTS: [&str; 3] = ["observer.exponent[1]", "observer.exponent[2]", "observer.exponent[3]"];
+        const ZONES: [&str; 3] =
+            ["observer.linear_zone[1]", "observer.linear_zone[2]", "observer.linear_zone[3]"];
+        match *self {
+            Self::Linear { bandwidth, input_gain } => vec![
+                ("observer.kind", Value::Text("linear")),
+                ("observer.tuning", Value::Text("bandwidth")),
+                ("observer.bandwidth", Value::Real(bandwidth)),
+                ("observer.input_gain", Value::Real(input_gain)),
+            ],
+            Self::Nonlinear { gains, input_gain, exponents, linear_zones } => {
+                let mut parameters = vec![
+                    ("observer.kind", Value::Text("nonlinear")),
+                    ("observer.tuning", Value::Text("gains")),
+                    ("observer.input_gain", Value::Real(input_gain)),
+                ];
+                for (names, values) in [(GAINS, gains), (EXPONENTS, exponents), (ZONES, linear_zones)] {
+                    parameters.extend(names.into_iter().zip(values.map(Value::Real)));
+                }
+                parameters
             }
         }
     }
