@@ -2,6 +2,9 @@
 //! Knows nothing of FMI.
 
 pub mod description;
+mod maglev_rig;
+mod maglev_rig_controller;
+mod maglev_rig_plant;
 mod magnetic_bearing;
 mod magnetic_bearing_controller;
 mod magnetic_bearing_plant;
@@ -15,6 +18,8 @@ pub mod variable;
 use core::fmt;
 
 pub use description::{Description, Token};
+pub use maglev_rig_controller::MaglevRigController;
+pub use maglev_rig_plant::MaglevRigPlant;
 pub use magnetic_bearing_controller::MagneticBearingController;
 pub use magnetic_bearing_plant::MagneticBearingPlant;
 pub use start_values::StartValues;
@@ -54,6 +59,8 @@ pub enum UnitError {
     Diverged { name: &'static str, value: f64, unit: &'static str },
     #[error("{ticks} ticks within one step of {duration} s: expected at most {limit}")]
     TooManyTicks { ticks: i64, duration: f64, limit: i64 },
+    #[error("a step of {duration} s: expected at most {limit} s")]
+    StepTooLong { duration: f64, limit: f64 },
 }
 
 /// An exported unit: a flat array of values, indexed by value reference, and what it takes to advance them.
@@ -100,9 +107,16 @@ pub static MAGNETIC_BEARING_CONTROLLER: UnitType = UnitType {
     description: &magnetic_bearing_controller::DESCRIPTION,
     create: || Box::new(MagneticBearingController::new()),
 };
+pub static MAGLEV_RIG_PLANT: UnitType =
+    UnitType { description: &maglev_rig_plant::DESCRIPTION, create: || Box::new(MaglevRigPlant::new()) };
+pub static MAGLEV_RIG_CONTROLLER: UnitType = UnitType {
+    description: &maglev_rig_controller::DESCRIPTION,
+    create: || Box::new(MaglevRigController::new()),
+};
 
 /// All units the shared library offers.
-pub static UNITS: &[&UnitType] = &[&MAGNETIC_BEARING_PLANT, &MAGNETIC_BEARING_CONTROLLER];
+pub static UNITS: &[&UnitType] =
+    &[&MAGNETIC_BEARING_PLANT, &MAGNETIC_BEARING_CONTROLLER, &MAGLEV_RIG_PLANT, &MAGLEV_RIG_CONTROLLER];
 
 /// Start values of a table.
 fn start_values<const N: usize>(variables: &[variable::Variable; N]) -> [f64; N] {

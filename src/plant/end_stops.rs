@@ -1,0 +1,325 @@
+//! A body on one axis between two stops.
+//!
+//! State 0 is the position \[m\], state 1 the velocity \[m/s\]; further states (flux, current) flow on during contact.
+//! An impact is perfectly inelastic: the position becomes the stop's, the velocity zero. The body rests until the
+//! free acceleration points away from the stop. Impacts and releases are found to the last digit of the step by
+//! bisection on the integrator itself: the step to an event is a Runge-Kutta step that ends there.
+//!
+//! [`advance`] is made of [`rate_in_contact`], [`event_indicators`] and [`transition`], which are also what another
+//! integrator needs to do the same.
+
+use super::runge_kutta;
+
+/// Where the body rests, named by the position and not by up and down, which depend on the rig's axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Contact {
+    /// It moves freely.
+    #[default]
+    None,
+    AtSmallestPosition,
+    AtLargestPosition,
+}
+
+/// A body guided along one axis, with all its inputs held.
+pub trait Guided<const N: usize> {
+    /// Rate of the state in free flight; `rate[0]` is the velocity, `rate[1]` the acceleration \[m/s2\].
+    fn rate(&self, state: &[f64; N]) -> [f64; N];
+
+    /// Smallest and largest position \[m\], in this order and different.
+    fn stops(&self) -> (f64, f64);
+}
+
+/// Events within one sub-step after which a chattering body is left as it is until the sub-step's end. Each impact
+/// but the first of a sub-step needs a release in between, so that a real motion has one or two.
+const EVENTS_PER_SUBSTEP: u32 = 8;
+
+/// Halvings of an interval until its ends are neighbouring numbers or the rest does not matter.
+const BISECTIONS: u32 = 64;
+
+/// Rate of the state: at a stop neither position nor velocity change.
+#[inline]
+pub fn rate_in_contact<const N: usize>(
+    system: &impl Guided<N>,
+    state: &[f64; N],
+    contact: Contact,
+) -> [f64; N] {
+    let mut rate = system.rate(state);
+    if contact != Contact::None {
+        rate[0] = 0.0;
+        rate[1] = 0.0;
+    }
+    rate
+}
+
+/// One number per stop, the smallest position first: positive while nothing happens there, negative once
+/// [`transition`] is due. For a stop the body does not touch it is the distance \[m\], for the one it rests on the
+/// acceleration \[m/s2\] that presses it on.
+#[inline]
+pub fn event_indicators<const N: usize>(
+    system: &impl Guided<N>,
+    state: &[f64; N],
+    contact: Contact,
+) -> [f64; 2] {
+    let (smallest, largest) = system.stops();
+    let mut indicators = [state[0] - smallest, largest - state[0]];
+    match contact {
+        Contact::None => {}
+        Contact::AtSmallestPosition => indicators[0] = -system.rate(state)[1],
+        Contact::AtLargestPosition => indicators[1] = system.rate(state)[1],
+    }
+    indicators
+}
+
+/// What an event makes of the state, and the contact after it: an impact stops the body, an acceleration away from
+/// the stop releases it. Without an event both stay as they are.
+#[inline]
+pub fn transition<const N: usize>(
+    system: &impl Guided<N>,
+    state: &mut [f64; N],
+    contact: Contact,
+) -> Contact {
+    let (smallest, largest) = system.stops();
+    let (stop, touched, inwards) = match contact {
+        Contact::AtSmallestPosition => (smallest, Contact::AtSmallestPosition, 1.0),
+        Contact::AtLargestPosition => (largest, Contact::AtLargestPosition, -1.0),
+        Contact::None if state[0] <= smallest => (smallest, Contact::AtSmallestPosition, 1.0),
+        Contact::None if state[0] >= largest => (largest, Contact::AtLargestPosition, -1.0),
+        Contact::None => return Contact::None,
+    };
+    state[0] = stop;
+    if contact == Contact::None && inwards * state[1] > 0.0 {
+        return Contact::None;
+    }
+    state[1] = 0.0;
+    if inwards * system.rate(state)[1] > 0.0 { Contact::None } else { touched }
+}
+
+/// Lets `duration` \[s\] pass in sub-steps of at most `longest_substep` \[s\].
+///
+/// A motion that leaves and comes back within one sub-step is noticed for the position, not for the acceleration
+/// during contact. Numbers that are not finite come out as they are; the caller judges them.
+#[inline]
+pub fn advance<const N: usize>(
+    system: &impl Guided<N>,
+    state: &mut [f64; N],
+    contact: &mut Contact,
+    duration: f64,
+    longest_substep: f64,
+) {
+    // The cast saturates; a share of 1e-9 keeps a rounded quotient from costing a sub-step.
+    let substeps = (libm::ceil(duration / longest_substep * (1.0 - 1e-9)) as u64).max(1);
+    let substep = duration / substeps as f64;
+    *contact = transition(system, state, *contact);
+    for _ in 0..substeps {
+        advance_substep(system, state, contact, substep);
+    }
+}
+
+fn advance_substep<const N: usize>(
+    system: &impl Guided<N>,
+    state: &mut [f64; N],
+    contact: &mut Contact,
+    substep: f64,
+) {
+    let mut remaining = substep;
+    for _ in 0..EVENTS_PER_SUBSTEP {
+        let end = flow(system, state, *contact, remaining);
+        let Some(time) = first_event(system, state, &end, *contact, remaining) else {
+            *state = end;
+            return;
+        };
+        *state = flow(system, state, *contact, time);
+        *contact = transition(system, state, *contact);
+        remaining -= time;
+        if remaining <= 0.0 {
+            return;
+        }
+    }
+    chatter(system, state, contact, remaining);
+}
+
+/// Forces about to balance at a stop, told apart by rounding errors only: the rest of the sub-step in one piece.
+#[cold]
+fn chatter<const N: usize>(
+    system: &impl Guided<N>,
+    state: &mut [f64; N],
+    contact: &mut Contact,
+    remaining: f64,
+) {
+    *state = flow(system, state, *contact, remaining);
+    *contact = transition(system, state, *contact);
+}
+
+#[inline]
+fn flow<const N: usize>(
+    system: &impl Guided<N>,
+    state: &[f64; N],
+    contact: Contact,
+    duration: f64,
+) -> [f64; N] {
+    match contact {
+        Contact::None => runge_kutta::step(|state| system.rate(state), state, duration),
+        _ => runge_kutta::step(|state| rate_in_contact(system, state, contact), state, duration),
+    }
+}
+
+/// Time of the first event in (0, `duration`\], given where the state would be at its end without one.
+#[inline]
+fn first_event<const N: usize>(
+    system: &impl Guided<N>,
+    start: &[f64; N],
+    end: &[f64; N],
+    contact: Contact,
+    duration: f64,
+) -> Option<f64> {
+    let due = |state: &[f64; N]| event_indicators(system, state, contact).iter().any(|z| *z < 0.0);
+    if due(end) {
+        return Some(first_time(|time| due(&flow(system, start, contact, time)), duration));
+    }
+    // The position may have been beyond a stop in between, if the velocity has turned.
+    let (smallest, largest) = system.stops();
+    let reach = start[1].abs() * duration;
+    let near = start[0] - smallest <= reach || largest - start[0] <= reach;
+    if contact == Contact::None && near && start[1] * end[1] < 0.0 {
+        let turned = |time| flow(system, start, contact, time)[1] * start[1] <= 0.0;
+        let turning_point = first_time(turned, duration);
+        if due(&flow(system, start, contact, turning_point)) {
+            return Some(first_time(|time| due(&flow(system, start, contact, time)), turning_point));
+        }
+    }
+    None
+}
+
+/// Smallest number found for which `happened` holds, given that it does at `latest`: bisection to the last digit.
+#[cold]
+fn first_time(happened: impl Fn(f64) -> bool, latest: f64) -> f64 {
+    let (mut before, mut after) = (0.0, latest);
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (before + after);
+        if middle <= before || middle >= after {
+            break;
+        }
+        *(if happened(middle) { &mut after } else { &mut before }) = middle;
+    }
+    after
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// A body under a constant acceleration and one that grows in time, the third state: all motions are polynomials.
+    struct Thrown {
+        acceleration: f64,
+        jerk: f64,
+    }
+
+    impl Guided<3> for Thrown {
+        fn rate(&self, state: &[f64; 3]) -> [f64; 3] {
+            [state[1], self.acceleration + self.jerk * state[2], 1.0]
+        }
+
+        fn stops(&self) -> (f64, f64) {
+            (-1.0, 2.0)
+        }
+    }
+
+    #[test]
+    fn impact_comes_at_the_exact_time() {
+        // From 0 with 1 m/s upwards and 2 m/s2 down: at -1 m after (1 + sqrt 5) / 2 s.
+        let system = Thrown { acceleration: -2.0, jerk: 0.0 };
+        let golden = (1.0 + 5f64.sqrt()) / 2.0;
+        for (until, expected) in
+            [(golden - 1e-12, Contact::None), (golden + 1e-12, Contact::AtSmallestPosition)]
+        {
+            let (mut state, mut contact) = ([0.0, 1.0, 0.0], Contact::None);
+            advance(&system, &mut state, &mut contact, until, 0.3);
+            assert_eq!(contact, expected);
+        }
+        let (mut state, mut contact) = ([0.0, 1.0, 0.0], Contact::None);
+        advance(&system, &mut state, &mut contact, 3.0, 0.3);
+        assert_eq!((state[0], state[1], contact), (-1.0, 0.0, Contact::AtSmallestPosition));
+        assert!((state[2] - 3.0).abs() < 1e-12, "the other states flow on");
+    }
+
+    #[test]
+    fn release_comes_at_the_exact_time_and_the_flight_starts_from_rest() {
+        // Pressed on the largest position until t = 1 s, then drawn away with a jerk of -3 m/s3.
+        let system = Thrown { acceleration: 3.0, jerk: -3.0 };
+        let (mut state, mut contact) = ([2.0, 0.0, 0.0], Contact::AtLargestPosition);
+        advance(&system, &mut state, &mut contact, 1.5, 0.4);
+        assert_eq!(contact, Contact::None);
+        assert!((state[0] - (2.0 - 0.5 * 0.5f64.powi(3))).abs() < 1e-14, "{}", state[0]);
+        assert!((state[1] + 1.5 * 0.5f64.powi(2)).abs() < 1e-14, "{}", state[1]);
+    }
+
+    #[test]
+    fn a_short_touch_between_two_points_of_time_is_an_impact() {
+        // The top of the throw lies 0.02 m beyond the stop and falls between the ends of one sub-step.
+        let system = Thrown { acceleration: -4.0, jerk: 0.0 };
+        let speed = (2.0 * 4.0 * 2.02f64).sqrt();
+        let impact = (speed - (speed * speed - 2.0 * 4.0 * 2.0).sqrt()) / 4.0;
+        let (mut state, mut contact) = ([0.0, speed, 0.0], Contact::None);
+        advance(&system, &mut state, &mut contact, 1.2, 1.2);
+        let fall = 1.2 - impact;
+        assert_eq!(contact, Contact::None);
+        assert!((state[0] - (2.0 - 2.0 * fall * fall)).abs() < 1e-13, "{}", state[0]);
+        assert!((state[1] + 4.0 * fall).abs() < 1e-13, "{}", state[1]);
+    }
+
+    #[test]
+    fn balanced_forces_at_a_stop_end() {
+        // No acceleration at all, and one that changes its sign exactly when the body rests.
+        for (acceleration, jerk) in [(0.0, 0.0), (0.0, 1.0), (0.0, -1.0), (-1e-300, 1e-300)] {
+            let system = Thrown { acceleration, jerk };
+            for start in [-1.0, 2.0] {
+                let (mut state, mut contact) = ([start, 0.0, 0.0], Contact::None);
+                advance(&system, &mut state, &mut contact, 1.0, 0.01);
+                assert!((-1.0..=2.0).contains(&state[0]), "{state:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_not_a_number_ends_and_shows() {
+        let (mut state, mut contact) = ([0.0, f64::NAN, 0.0], Contact::None);
+        advance(&Thrown { acceleration: 1.0, jerk: 0.0 }, &mut state, &mut contact, 1.0, 0.01);
+        assert!(state[0].is_nan());
+    }
+
+    /// A body between the stops on a spring, shaken with a period of 2 pi s.
+    struct Shaken {
+        stiffness: f64,
+        amplitude: f64,
+    }
+
+    impl Guided<3> for Shaken {
+        fn rate(&self, state: &[f64; 3]) -> [f64; 3] {
+            [state[1], self.amplitude * libm::sin(state[2]) - self.stiffness * state[0], 1.0]
+        }
+
+        fn stops(&self) -> (f64, f64) {
+            (-1.0, 2.0)
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn the_way_the_time_is_cut_does_not_matter(
+            stiffness in 0.0..3.0f64, amplitude in 0.0..20.0f64, velocity in -5.0..5.0f64, share in 0.01..0.99f64,
+        ) {
+            let system = Shaken { stiffness, amplitude };
+            let run = |cuts: &[f64], substep| {
+                let (mut state, mut contact) = ([0.5, velocity, 0.0], Contact::None);
+                cuts.iter().for_each(|cut| advance(&system, &mut state, &mut contact, *cut, substep));
+                state
+            };
+            let fine = run(&[10.0], 1e-3);
+            let coarse = run(&[10.0 * share, 10.0 * (1.0 - share)], 1e-2);
+            prop_assert!((-1.0..=2.0).contains(&fine[0]));
+            prop_assert!((fine[0] - coarse[0]).abs() < 1e-7 && (fine[1] - coarse[1]).abs() < 1e-6,
+                "{:?} {:?}", fine, coarse);
+        }
+    }
+}
