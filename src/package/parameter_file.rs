@@ -198,12 +198,13 @@ mod tests {
     #[test]
     fn what_is_written_reads_back() {
         let assignments = [
-            ("observer.kind", 4.0),
-            ("observer.line_search", 1.0),
-            ("observer.window", 10.0),
-            ("controller.k1", 0.1 + 0.2),
+            ("observer.kind", json!("kalman"), 4.0),
+            ("observer.line_search", json!(true), 1.0),
+            ("observer.window", json!(10), 10.0),
+            ("controller.k1", json!(0.1 + 0.2), 0.1 + 0.2),
         ];
-        let written = ParameterFile::new(CONTROLLER.description, &assignments, json!({ "seed": 1 })).unwrap();
+        let given = assignments.iter().map(|(name, value, _)| (*name, value.clone()));
+        let written = ParameterFile::new(CONTROLLER.description, given, json!({ "seed": 1 })).unwrap();
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("bearing.json");
         assert_eq!(written.write(&path).unwrap().size, fs::read(&path).unwrap().len());
