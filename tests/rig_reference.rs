@@ -7,6 +7,7 @@ use maglev_fmu::observer::extended_state::{
     ExtendedState, ExtendedStateModel, LinearInjection, gains_from_bandwidth,
 };
 use maglev_fmu::observer::extended_state_exact::ExactPredictor;
+use rig::units::{CURRENT, MATCHED, METRES, NONLINEAR, RUNGE_KUTTA, RigLoop, ZERO, get, set};
 use rig::{SENSOR, T, data_run, sine_step, table_4};
 
 /// Rows every 5 ms over 4 s: time, reference, x, x', sensor and coil voltage, then z1, z2, z3 of LESO and NESO in metres from
@@ -70,4 +71,41 @@ fn native_loop_and_observers_match_the_reference() {
     }
     assert_columns_match(&rows, &(0..15).collect::<Vec<_>>(), 1e-9);
     assert_eq!(SENSOR.voltage(9e-3), -1.50868);
+}
+
+/// Rows as in the reference, with the estimates of one observer, from a run through the units.
+fn unit_rows(controller: &[(&str, f64)]) -> Vec<Vec<f64>> {
+    let mut rig = RigLoop::new(&[], controller);
+    let mut rows = Vec::new();
+    for k in 0..4000 {
+        let time = f64::from(k) * T;
+        let reference = SENSOR.voltage(9e-3) + sine_step(time);
+        set(&mut rig.controller, "reference", reference);
+        let plant = ["position", "velocity", "sensor_voltage"].map(|name| get(&rig.plant, name));
+        rig.step_controller();
+        if k % 5 == 0 {
+            let controller = ["voltage", "estimate.position", "estimate.velocity", "estimate.extended"]
+                .map(|name| get(&rig.controller, name));
+            rows.push([&[time, reference][..], &plant, &controller].concat());
+        }
+        rig.step_plant();
+    }
+    rows
+}
+
+#[test]
+fn units_match_the_reference() {
+    let paper = [
+        ("observer.measurement", METRES),
+        ("observer.initial", ZERO),
+        ("observer.discretisation", RUNGE_KUTTA),
+        ("observer.form", CURRENT),
+    ];
+    let nonlinear = [&paper[..], &[("observer.kind", NONLINEAR)]].concat();
+    for (controller, estimate) in
+        [(&paper[..], [6, 7, 8]), (&nonlinear, [9, 10, 11]), (&[("observer.initial", MATCHED)], [12, 13, 14])]
+    {
+        let columns = [&[0, 1, 2, 3, 4, 5][..], &estimate].concat();
+        assert_columns_match(&unit_rows(controller), &columns, 1e-9);
+    }
 }

@@ -2,6 +2,8 @@
 //! sub-steps per sample. Written apart from the plant's own integrator, as a second opinion.
 #![allow(dead_code, reason = "each test uses a part")]
 
+pub mod units;
+
 use maglev_fmu::controller::digital_pid::{Derivative, DigitalPid, PidSettings};
 use maglev_fmu::observer::extended_state::NonlinearInjection;
 use maglev_fmu::observer::extended_state::gains_from_bandwidth;
