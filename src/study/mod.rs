@@ -80,4 +80,9 @@ pub static EXPERIMENTS: &[Experiment] = &[
         summary: "all observers of the magnetic bearing under noise, next to the Cramer-Rao bound",
         run: bearing_observers::run,
     },
+    Experiment {
+        name: "rig",
+        summary: "extended state observers of the maglev rig: Table 5, figures 3 and 5, the particle swarm and the claims",
+        run: rig::run,
+    },
 ];
