@@ -28,6 +28,7 @@ use maglev_fmu::unit::{
 };
 use measure::{Candidate, medians, verdict};
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 const T: f64 = 1e-3;
 const STEPS: usize = 10_000;
@@ -75,7 +76,7 @@ fn record() -> Recording {
 }
 
 /// The controller's table with another behaviour behind it.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 struct Baseline {
     controller: MagneticBearingController,
     clock: SampleClock,

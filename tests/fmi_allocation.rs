@@ -5,12 +5,15 @@ mod harness;
 
 use core::ffi::{c_char, c_void};
 use core::mem::transmute;
+use core::ptr::null_mut;
 use core::sync::atomic::{AtomicU32, Ordering};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::ffi::CString;
 
-use harness::{BOTH, CONTROLLER, Component, ERROR, OK, PLANT, Standard, all, description, instantiate_with};
+use harness::{
+    BOTH, CONTROLLER, Component, ERROR, OK, PLANT, Standard, State, all, description, instantiate_with,
+};
 use maglev_fmu::fmi::fmi2::types::fmi2CallbackLogger;
 
 thread_local! {
@@ -137,6 +140,48 @@ fn steps_gets_and_sets_use_no_heap() {
             assert_eq!(uses, 0);
             assert_eq!(messages > 3, logging_on && unit == CONTROLLER, "the observer has something to say");
         }
+    }
+}
+
+#[test]
+fn states_are_one_block_each() {
+    for (standard, unit) in all() {
+        let messages = AtomicU32::new(0);
+        let component = counting(standard, unit, &messages, true);
+        assert_eq!(component.step(0.0, 1e-3), OK);
+        let (mut state, mut copy): (State, State) = (null_mut(), null_mut());
+        let mut size = 0;
+        let before = BLOCKS.get();
+        assert_eq!(uses_of_the_heap(|| assert_eq!(component.get_state(&mut state), OK)), 1);
+        assert_eq!(component.state_size(state, &mut size), OK);
+        let mut bytes = [0; 4096];
+        let bytes = &mut bytes[..size];
+        let uses = uses_of_the_heap(|| {
+            for _ in 0..10 {
+                assert_eq!(component.set_state(state), OK);
+                assert_eq!(component.get_state(&mut state), OK);
+                assert_eq!(component.serialise_state(state, bytes), OK);
+                assert_eq!(component.deserialise_state(bytes, &mut state), OK);
+                assert_eq!(component.free_state(&mut null_mut()), OK);
+            }
+        });
+        assert_eq!(uses, 0);
+        assert_eq!(uses_of_the_heap(|| assert_eq!(component.deserialise_state(bytes, &mut copy), OK)), 1);
+        assert_eq!(BLOCKS.get(), before + 2);
+        // Nothing is leaked by what is refused.
+        let refusals = uses_of_the_heap(|| {
+            let mut none = null_mut();
+            assert_eq!(component.deserialise_state(&bytes[1..], &mut none), ERROR);
+            bytes[size - 1] ^= 1;
+            assert_eq!(component.deserialise_state(bytes, &mut none), ERROR);
+            assert_eq!(component.set_state(none), ERROR);
+            assert!(none.is_null());
+        });
+        assert_eq!(refusals, 0);
+        for state in [&mut state, &mut copy] {
+            assert_eq!(uses_of_the_heap(|| assert_eq!(component.free_state(state), OK)), 1);
+        }
+        assert_eq!(BLOCKS.get(), before);
     }
 }
 

@@ -1,6 +1,7 @@
 //! A step allocates nothing, whatever the observer, the law and the journal.
 
 mod native;
+mod rig;
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::fmt::{self, Write};
@@ -80,4 +81,40 @@ fn steps_allocate_nothing() {
         }
     }
     assert!(listener.0 > 0, "the observers had something to say");
+    rig_steps_allocate_nothing(&mut listener);
+}
+
+/// Every observer of the rig with both laws, one of them diverging, the ball lost and found.
+fn rig_steps_allocate_nothing(listener: &mut Listener) {
+    for index in 0..48 {
+        let parameters = [
+            ("observer.kind", index % 2),
+            ("observer.discretisation", index / 2 % 4),
+            ("observer.form", index / 8 % 2),
+            ("observer.measurement", index / 16 % 2),
+            ("controller.kind", index / 32),
+        ];
+        let mut controller = parameters.map(|(name, item)| (name, f64::from(item + 1))).to_vec();
+        controller.extend([("observer.bandwidth", 3000.0), ("observer.exponent[2]", 0.7)]);
+        let mut run = rig::units::RigLoop::new(&[("sensor.noise", 1e-3)], &controller);
+        let before = (ALLOCATIONS.load(Ordering::Relaxed), listener.0);
+        for tick in 0..200 {
+            for (from, to) in
+                [("sensor_voltage_measured", "sensor_voltage"), ("voltage_measured", "voltage_applied")]
+            {
+                let value = get(&run.plant, from);
+                set(&mut run.controller, to, value);
+            }
+            if tick == 100 {
+                run.controller.adopt_parameters();
+            }
+            run.controller.advance(1e-3, listener).unwrap();
+            let voltage = get(&run.controller, "voltage");
+            set(&mut run.plant, "voltage", voltage);
+            set(&mut run.plant, "force", 5.0 * f64::from(u8::from(tick > 50)));
+            run.plant.advance(1e-3, listener).unwrap();
+        }
+        assert_eq!(ALLOCATIONS.load(Ordering::Relaxed), before.0, "{controller:?}");
+        assert!(listener.0 > before.1, "the lost ball is worth a remark");
+    }
 }

@@ -1,9 +1,10 @@
 //! The three nonlinear laws (8) of the magnetic bearing paper (Mystkowski, Kotta, Kaparin 2018).
 
 use crate::plant::magnetic_bearing::State;
+use serde::{Deserialize, Serialize};
 
 /// Which of the laws (8a), (8b), (8c).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Law {
     A,
     B,
@@ -11,7 +12,7 @@ pub enum Law {
 }
 
 /// Gains of the linear part u0 = -k1 x1 - k2 x2.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Gains {
     /// k1 \[V/m\], printed 0.92
     pub position: f64,

@@ -3,9 +3,10 @@
 use super::bearing_feedback::{self, Gains, Law};
 use super::flux_cascade::FluxCascade;
 use crate::plant::magnetic_bearing::{MagneticBearing, State};
+use serde::{Deserialize, Serialize};
 
 /// A law with its gains.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum BearingLaw {
     /// (8a), (8b), (8c)
     Printed(Law, Gains),

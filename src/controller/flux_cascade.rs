@@ -17,10 +17,11 @@
 //! The printed laws are linear around zero flux where the force is not, so that they need minutes.
 
 use crate::plant::magnetic_bearing::{MagneticBearing, State};
+use serde::{Deserialize, Serialize};
 
 /// Gains of the cascade. kp = 25, kd = 10, k3 = 200, r = 1e-3 settle within 2 s at T = 1 ms and stay below 90 V;
 /// kp = 100, kd = 20 within 1 s, at up to 150 V.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FluxCascade {
     /// kp \[1/s2\]: square of the position loop's natural frequency.
     pub position_gain: f64,

@@ -1,6 +1,7 @@
 //! Communication points: whether a step follows the one before, and how much time really passes.
 
 use super::CallError;
+use serde::{Deserialize, Serialize};
 
 /// Rounding that importers accumulate between two communication points, in units in the last place.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -9,7 +10,7 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 const TOLERANCE: f64 = 1e-3;
 
 /// The point the simulation has reached.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CommunicationPoint {
     /// \[s\]
     now: f64,

@@ -1,6 +1,6 @@
 //! Why a call was refused. The instance is as it was before the call.
 
-use super::Status;
+use super::{StateError, Status};
 use crate::unit::UnitError;
 use crate::unit::value::ValueError;
 use thiserror::Error;
@@ -28,6 +28,8 @@ pub enum CallError {
     TimeDoesNotFollow { got: f64, expected: f64 },
     #[error(transparent)]
     Unit(#[from] UnitError),
+    #[error(transparent)]
+    State(#[from] StateError),
     #[error("category number {0} is not declared in the model description: expected one of {categories}", categories = super::log::CategoryList)]
     UnknownCategory(usize),
     #[error("not offered by this unit: {0}")]

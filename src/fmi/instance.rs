@@ -3,6 +3,7 @@
 use core::ffi::CStr;
 use core::fmt;
 
+use super::saved_state::Life;
 use super::{CallError, Callback, CommunicationPoint, Function, Logger, Phase};
 use crate::unit::start_values::read_token;
 use crate::unit::variable::Variable;
@@ -117,6 +118,26 @@ impl Instance {
         self.is_stale = true;
         self.note(format_args!("reset"));
         Ok(())
+    }
+
+    /// Whether the instance can get into `phase`.
+    pub(super) fn reaches(&self, phase: Phase) -> bool {
+        matches!(phase, Phase::Instantiated | Phase::InitializationMode | Phase::StepMode | Phase::Terminated)
+    }
+
+    /// What a saved state has to tell besides the unit.
+    pub(super) fn life(&self) -> Life {
+        let Self { phase, communication, start_time, is_stale, .. } = *self;
+        Life { phase, communication, start_time, is_stale }
+    }
+
+    /// Goes on from a saved state; the unit has been restored.
+    pub(super) fn resume(&mut self, life: Life) {
+        let Life { phase, communication, start_time, is_stale } = life;
+        self.phase = phase;
+        self.communication = communication;
+        self.start_time = start_time;
+        self.is_stale = is_stale;
     }
 
     pub(super) fn note(&mut self, message: fmt::Arguments<'_>) {

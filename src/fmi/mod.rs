@@ -12,6 +12,8 @@ pub mod fmi3;
 mod instance;
 mod log;
 mod phase;
+mod saved_state;
+mod state_handle;
 mod status;
 mod version;
 
@@ -20,5 +22,6 @@ pub use error::CallError;
 pub use instance::Instance;
 pub use log::{Callback, LOG_CATEGORIES, Logger};
 pub use phase::{Function, Phase};
+pub use saved_state::{LONGEST_SAVED_STATE, SavedState, StateError};
 pub use status::Status;
 pub use version::FmiVersion;

@@ -1,7 +1,9 @@
 //! Phases of an instance's life and which function may be called in which.
 
+use serde::{Deserialize, Serialize};
+
 /// States of the standards' state machines; those of FMI 2.0 and FMI 3.0 that mean the same are one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[repr(u16)]
 pub enum Phase {
     Instantiated = 1 << 0,

@@ -6,6 +6,7 @@ use super::newton::{NewtonObserver, NewtonSettings};
 use super::reduced_newton::{ReducedNewtonObserver, ReducedNewtonSettings};
 use super::windowed_newton::{WindowedNewtonObserver, WindowedNewtonSettings};
 use crate::plant::magnetic_bearing::State;
+use serde::{Deserialize, Serialize};
 
 /// Which observer, and what it knows of its plant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,7 +20,7 @@ pub enum BearingObserverSettings {
 /// An observer with its settings.
 ///
 /// A windowed or a Kalman observer takes a kilobyte, which is not worth a pointer: observers are plain memory.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum BearingObserver {
     Newton(NewtonSettings, NewtonObserver),
     WindowedNewton(WindowedNewtonSettings, WindowedNewtonObserver),
@@ -39,6 +40,16 @@ impl BearingObserver {
                 Self::ReducedNewton(settings, ReducedNewtonObserver::new(initial))
             }
             BearingObserverSettings::Kalman(settings) => Self::Kalman(settings, KalmanObserver::new(initial)),
+        }
+    }
+
+    /// What it was set up with.
+    pub fn settings(&self) -> BearingObserverSettings {
+        match self {
+            Self::Newton(settings, _) => BearingObserverSettings::Newton(*settings),
+            Self::WindowedNewton(settings, _) => BearingObserverSettings::WindowedNewton(*settings),
+            Self::ReducedNewton(settings, _) => BearingObserverSettings::ReducedNewton(*settings),
+            Self::Kalman(settings, _) => BearingObserverSettings::Kalman(*settings),
         }
     }
 

@@ -8,9 +8,10 @@
 
 use crate::plant::magnetic_bearing::ForceEffect;
 use nalgebra::Matrix3;
+use serde::{Deserialize, Serialize};
 
 /// U and D.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FactoredCovariance {
     /// Diagonal of D, in m2, m2/s2, Wb2.
     diagonal: [f64; 3],

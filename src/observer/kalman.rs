@@ -40,8 +40,11 @@
 
 use super::Estimate;
 use super::factored_covariance::FactoredCovariance;
+use super::saved_count::count_up_to;
 use crate::plant::magnetic_bearing::{ForceEffect, MagneticBearing, Map, State};
 use nalgebra::Matrix3;
+use serde::{Deserialize, Serialize};
+use serde_big_array::BigArray;
 
 /// Variances of the initial position \[m2\], velocity \[m2/s2\] and flux \[Wb2\].
 pub const INITIAL_VARIANCES: [f64; 3] = [1e-4, 1e-4, 1e-2];
@@ -61,7 +64,7 @@ const SHORTEST_BEGINNING: usize = 8;
 const KNOWN_FLUX: f64 = 0.1;
 
 /// What the filter believes of its plant and its sensor.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct KalmanSettings {
     pub bearing: MagneticBearing,
     /// Model of a step; the filter is meant for the exact one.
@@ -75,15 +78,18 @@ pub struct KalmanSettings {
 }
 
 /// Estimate and covariance after the last sample, and the first samples.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct KalmanObserver {
     filter: Filter,
     /// Where the filter starts, again when a sample yields nothing finite.
     initial: State,
     /// First outputs \[m\] and the voltage \[V\] that acted before each.
+    #[serde(with = "BigArray")]
     positions: [f64; BEGINNING],
+    #[serde(with = "BigArray")]
     voltages: [f64; BEGINNING],
     /// Samples since the start, counted up to [`BEGINNING`].
+    #[serde(deserialize_with = "count_up_to::<_, BEGINNING>")]
     samples: usize,
     /// Last estimate, kept when a sample yields nothing finite.
     estimate: State,
@@ -178,7 +184,7 @@ impl KalmanObserver {
 }
 
 /// State and covariance.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Filter {
     state: State,
     covariance: FactoredCovariance,

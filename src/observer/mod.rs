@@ -10,6 +10,7 @@ mod least_squares_window;
 pub mod newton;
 pub mod reduced_newton;
 pub mod sampled_extended_state;
+mod saved_count;
 mod square_window;
 mod step_length;
 pub mod windowed_newton;

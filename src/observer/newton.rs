@@ -6,11 +6,12 @@
 use super::largest_magnitude;
 use super::square_window::{Solution, Window};
 use crate::plant::magnetic_bearing::{MagneticBearing, Map, State};
+use serde::{Deserialize, Serialize};
 
 pub use super::Estimate;
 
 /// What the observer knows of its plant and how hard it tries.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NewtonSettings {
     pub bearing: MagneticBearing,
     /// Model inside H and F; the paper inverts the printed one.
@@ -27,7 +28,7 @@ pub struct NewtonSettings {
 }
 
 /// Two past samples and the starting point of the next inversion.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NewtonObserver {
     /// w0: state two samples before the next one.
     retarded: State,

@@ -28,9 +28,10 @@
 
 use super::{CONVERGED, Estimate};
 use crate::plant::magnetic_bearing::{MagneticBearing, Map, State};
+use serde::{Deserialize, Serialize};
 
 /// What the observer knows of its plant and how hard it tries.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ReducedNewtonSettings {
     pub bearing: MagneticBearing,
     /// Model inside (7); the paper inverts the printed one.
@@ -67,7 +68,7 @@ impl ReducedNewtonSettings {
 }
 
 /// Filter, two past voltages and the starting point of the next inversion.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ReducedNewtonObserver {
     /// x3\[k-1\] \[Wb\] when the sample k arrives: start of the iteration.
     flux: f64,

@@ -3,14 +3,17 @@
 
 use super::least_squares_window::Window;
 use super::newton::NewtonSettings;
+use super::saved_count::count_up_to;
 use super::{Estimate, largest_magnitude};
 use crate::plant::magnetic_bearing::State;
+use serde::{Deserialize, Serialize};
+use serde_big_array::BigArray;
 
 /// Longest window.
 pub const MAX_WINDOW: usize = 64;
 
 /// The Newton observer's settings and the length of the window.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WindowedNewtonSettings {
     pub newton: NewtonSettings,
     /// N \[samples\], 3 to [`MAX_WINDOW`]; other values count as the nearest of these.
@@ -18,14 +21,17 @@ pub struct WindowedNewtonSettings {
 }
 
 /// Past samples and the starting point of the next inversion.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WindowedNewtonObserver {
     /// w0: state at the oldest sample.
     retarded: State,
     /// Outputs \[m\], oldest first; `samples` of them.
+    #[serde(with = "BigArray")]
     positions: [f64; MAX_WINDOW],
     /// Voltage \[V\] that acted from each of these to the next.
+    #[serde(with = "BigArray")]
     voltages: [f64; MAX_WINDOW],
+    #[serde(deserialize_with = "count_up_to::<_, MAX_WINDOW>")]
     samples: usize,
     /// Last estimate, kept when an inversion yields nothing finite.
     estimate: State,

@@ -14,9 +14,10 @@
 //! [`Map::Exact`] splits the step where the flux crosses zero.
 
 use nalgebra::Matrix3;
+use serde::{Deserialize, Serialize};
 
 /// State of the bearing.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// x1 \[m\]
     pub position: f64,
@@ -44,7 +45,7 @@ impl State {
 }
 
 /// Which closed form advances the state over a step with held voltage.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Map {
     /// (4a) as printed, sgn(0) = 0: wrong when the flux changes its sign inside the step.
     Printed,
@@ -61,7 +62,7 @@ pub struct ForceEffect {
 }
 
 /// The bearing of (3).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MagneticBearing {
     /// eps = 2 Phi0 / Phi_sat \[1\]; 0 is operation without bias flux.
     pub epsilon: f64,

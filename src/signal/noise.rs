@@ -2,11 +2,12 @@
 
 use rand_core::Rng;
 use rand_pcg::Pcg32;
+use serde::{Deserialize, Serialize};
 
 /// Sequence of independent standard normal numbers, the same on every platform for the same seed and stream.
 ///
 /// PCG-XSH-RR 64/32 (O'Neill 2014) through the crate `rand_pcg`, turned normal by Box and Muller (1958) with `libm`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GaussianNoise {
     generator: Pcg32,
 }

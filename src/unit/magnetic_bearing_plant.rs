@@ -6,6 +6,8 @@ use super::variable::{Kind, Variability, Variable, variable_table};
 use super::{Description, Journal, Unit, UnitError, start_values};
 use crate::plant::magnetic_bearing::{MagneticBearing, State};
 use crate::signal::{GaussianNoise, quantise};
+use serde::{Deserialize, Serialize};
+use serde_big_array::BigArray;
 
 variable_table! {
     TIME = Variable::time();
@@ -81,8 +83,9 @@ const SENSOR_STREAM: u64 = 1;
 const PROCESS_STREAM: u64 = 2;
 
 /// The plant as a unit.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct MagneticBearingPlant {
+    #[serde(with = "BigArray")]
     values: [f64; COUNT],
     bearing: MagneticBearing,
     state: State,
@@ -167,6 +170,11 @@ impl Unit for MagneticBearingPlant {
         self.values[VOLTAGE_MEASURED] = voltage;
         self.publish();
         Ok(())
+    }
+
+    fn is_consistent(&self) -> bool {
+        self.bearing == MagneticBearing::with_bias(self.values[BIAS_FLUX], self.values[SATURATION_FLUX])
+            && check_finite(&self.state).is_ok()
     }
 
     fn boxed_clone(&self) -> Box<dyn Unit> {

@@ -8,6 +8,7 @@ mod maglev_rig_plant;
 mod magnetic_bearing;
 mod magnetic_bearing_controller;
 mod magnetic_bearing_plant;
+pub mod persistence;
 pub mod quantity;
 pub mod sample_clock;
 pub mod start_values;
@@ -22,6 +23,7 @@ pub use maglev_rig_controller::MaglevRigController;
 pub use maglev_rig_plant::MaglevRigPlant;
 pub use magnetic_bearing_controller::MagneticBearingController;
 pub use magnetic_bearing_plant::MagneticBearingPlant;
+pub use persistence::Persistent;
 pub use start_values::StartValues;
 pub use system::System;
 use thiserror::Error;
@@ -65,8 +67,9 @@ pub enum UnitError {
 
 /// An exported unit: a flat array of values, indexed by value reference, and what it takes to advance them.
 ///
-/// Units are plain memory: no pointers, no resources; a clone continues bit for bit like the original.
-pub trait Unit: Send {
+/// Units are plain memory: no pointers, no resources; a clone continues bit for bit like the original, and so does
+/// one that went through bytes ([`Persistent`]).
+pub trait Unit: Persistent + Send {
     fn description(&self) -> &'static Description;
 
     /// Values by value reference; [`TIME`] is kept by the caller.
@@ -84,6 +87,13 @@ pub trait Unit: Send {
 
     /// Lets `duration` \[s\], positive and finite, pass with the present inputs held.
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError>;
+
+    /// Whether what the unit has computed from its parameters still belongs to them, once it is initialised. Asked of
+    /// units read from bytes only, which anybody may have written; a unit answers for whatever could make it panic
+    /// or compute without end.
+    fn is_consistent(&self) -> bool {
+        true
+    }
 
     /// Copy on the heap.
     fn boxed_clone(&self) -> Box<dyn Unit>;

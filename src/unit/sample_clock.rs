@@ -6,18 +6,20 @@
 //! depend on how the interval was cut into steps, not even when an importer rounds its step size to some ten digits.
 
 use super::UnitError;
+use serde::{Deserialize, Serialize};
 
 /// Share of a period by which a communication point may miss a tick and still mean it.
 const TOLERANCE: f64 = 1e-4;
 
 /// Clock with integer ticks.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SampleClock {
     /// \[s\]
     period: f64,
     /// Time since t = 0 \[s\] as an unevaluated sum of a large and a small part.
     elapsed: (f64, f64),
-    /// Number k of the next tick.
+    /// Number k of the next tick; saved in a fixed number of bytes.
+    #[serde(with = "postcard::fixint::le")]
     next: i64,
 }
 
@@ -55,6 +57,16 @@ impl SampleClock {
         }
         *self = clock;
         Ok(ticks)
+    }
+
+    /// Whether a clock with this `period` \[s\] can stand here; false for numbers that no clock ever has.
+    pub fn may_stand_where_it_does(&self, period: f64) -> bool {
+        let due = self.first_tick_not_before_now();
+        self.period == period
+            && period > 0.0
+            && self.elapsed.0.is_finite()
+            && self.elapsed.1.is_finite()
+            && (due..=due.saturating_add(1)).contains(&self.next)
     }
 
     /// Time of tick `k` \[s\].

@@ -9,7 +9,8 @@ use maglev_fmu::fmi::fmi2::types::{
 };
 use maglev_fmu::fmi::fmi2::*;
 
-use super::life_cycle::Outcome::{self, Discards, NotOffered, Works};
+use super::harness::OK;
+use super::life_cycle::Outcome::{self, Discards, NotOffered, Refuses, Works};
 use super::life_cycle::Row;
 
 /// One reference of each type that both units have: the time, a real.
@@ -22,6 +23,16 @@ fn row(
     call: unsafe fn(*mut c_void) -> i32,
 ) -> Row {
     Row { name, allowed, outcome, call }
+}
+
+/// Saves a state and frees it.
+unsafe fn save_and_free(c: *mut c_void) -> i32 {
+    let mut state = null_mut();
+    // SAFETY: the caller's promise.
+    unsafe {
+        let status = fmi2GetFMUstate(c, &mut state);
+        if status == OK { fmi2FreeFMUstate(c, &mut state) } else { status }
+    }
 }
 
 /// The arguments are valid wherever the function is offered.
@@ -42,12 +53,12 @@ pub fn table() -> Vec<Row> {
         row("fmi2SetInteger", "xxx.", Works, |c| unsafe { fmi2SetInteger(c, null(), 0, null()) }),
         row("fmi2SetBoolean", "xxx.", Works, |c| unsafe { fmi2SetBoolean(c, null(), 0, null()) }),
         row("fmi2SetString", "xxx.", Works, |c| unsafe { fmi2SetString(c, null(), 0, null()) }),
-        row("fmi2GetFMUstate", "xxxx", NotOffered, |c| unsafe { fmi2GetFMUstate(c, &mut null_mut()) }),
-        row("fmi2SetFMUstate", "xxxx", NotOffered, |c| unsafe { fmi2SetFMUstate(c, null_mut()) }),
-        row("fmi2FreeFMUstate", "xxxx", NotOffered, |c| unsafe { fmi2FreeFMUstate(c, &mut null_mut()) }),
-        row("fmi2SerializedFMUstateSize", "xxxx", NotOffered, |c| unsafe { fmi2SerializedFMUstateSize(c, null_mut(), &mut 0) }),
-        row("fmi2SerializeFMUstate", "xxxx", NotOffered, |c| unsafe { fmi2SerializeFMUstate(c, null_mut(), null_mut(), 0) }),
-        row("fmi2DeSerializeFMUstate", "xxxx", NotOffered, |c| unsafe { fmi2DeSerializeFMUstate(c, null(), 0, &mut null_mut()) }),
+        row("fmi2GetFMUstate", "xxxx", Works, |c| unsafe { save_and_free(c) }),
+        row("fmi2SetFMUstate", "xxxx", Refuses("FMUState is a null pointer"), |c| unsafe { fmi2SetFMUstate(c, null_mut()) }),
+        row("fmi2FreeFMUstate", "xxxx", Works, |c| unsafe { fmi2FreeFMUstate(c, &mut null_mut()) }),
+        row("fmi2SerializedFMUstateSize", "xxxx", Refuses("FMUState is a null pointer"), |c| unsafe { fmi2SerializedFMUstateSize(c, null_mut(), &mut 0) }),
+        row("fmi2SerializeFMUstate", "xxxx", Refuses("FMUState is a null pointer"), |c| unsafe { fmi2SerializeFMUstate(c, null_mut(), null_mut(), 0) }),
+        row("fmi2DeSerializeFMUstate", "xxxx", Refuses("0 bytes: expected"), |c| unsafe { fmi2DeSerializeFMUstate(c, null(), 0, &mut null_mut()) }),
         row("fmi2GetDirectionalDerivative", ".xxx", NotOffered, |c| unsafe { fmi2GetDirectionalDerivative(c, null(), 0, null(), 0, null(), null_mut()) }),
         row("fmi2SetRealInputDerivatives", "xxx.", NotOffered, |c| unsafe { fmi2SetRealInputDerivatives(c, null(), 0, null(), null()) }),
         row("fmi2GetRealOutputDerivatives", "..xx", NotOffered, |c| unsafe { fmi2GetRealOutputDerivatives(c, null(), 0, null(), null_mut()) }),

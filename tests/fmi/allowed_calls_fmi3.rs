@@ -6,7 +6,8 @@ use core::ptr::{null, null_mut};
 
 use maglev_fmu::fmi::fmi3::*;
 
-use super::life_cycle::Outcome::{self, NotOffered, Works};
+use super::harness::OK;
+use super::life_cycle::Outcome::{self, NotOffered, Refuses, Works};
 use super::life_cycle::Row;
 
 /// The time, a Float64 of both units.
@@ -19,6 +20,16 @@ fn row(
     call: unsafe fn(*mut c_void) -> i32,
 ) -> Row {
     Row { name, allowed, outcome, call }
+}
+
+/// Saves a state and frees it.
+unsafe fn save_and_free(c: *mut c_void) -> i32 {
+    let mut state = null_mut();
+    // SAFETY: the caller's promise.
+    unsafe {
+        let status = fmi3GetFMUState(c, &mut state);
+        if status == OK { fmi3FreeFMUState(c, &mut state) } else { status }
+    }
 }
 
 /// The arguments are valid wherever the function is offered.
@@ -61,12 +72,12 @@ pub fn table() -> Vec<Row> {
         row("fmi3SetClock", "....", NotOffered, |c| unsafe { fmi3SetClock(c, null(), 0, null()) }),
         row("fmi3GetNumberOfVariableDependencies", "xxxx", NotOffered, |c| unsafe { fmi3GetNumberOfVariableDependencies(c, 2, &mut 0) }),
         row("fmi3GetVariableDependencies", "xxxx", NotOffered, |c| unsafe { fmi3GetVariableDependencies(c, 2, null_mut(), null_mut(), null_mut(), null_mut(), 0) }),
-        row("fmi3GetFMUState", "xxxx", NotOffered, |c| unsafe { fmi3GetFMUState(c, &mut null_mut()) }),
-        row("fmi3SetFMUState", "xxxx", NotOffered, |c| unsafe { fmi3SetFMUState(c, null_mut()) }),
-        row("fmi3FreeFMUState", "xxxx", NotOffered, |c| unsafe { fmi3FreeFMUState(c, &mut null_mut()) }),
-        row("fmi3SerializedFMUStateSize", "xxxx", NotOffered, |c| unsafe { fmi3SerializedFMUStateSize(c, null_mut(), &mut 0) }),
-        row("fmi3SerializeFMUState", "xxxx", NotOffered, |c| unsafe { fmi3SerializeFMUState(c, null_mut(), null_mut(), 0) }),
-        row("fmi3DeserializeFMUState", "xxxx", NotOffered, |c| unsafe { fmi3DeserializeFMUState(c, null(), 0, &mut null_mut()) }),
+        row("fmi3GetFMUState", "xxxx", Works, |c| unsafe { save_and_free(c) }),
+        row("fmi3SetFMUState", "xxxx", Refuses("FMUState is a null pointer"), |c| unsafe { fmi3SetFMUState(c, null_mut()) }),
+        row("fmi3FreeFMUState", "xxxx", Works, |c| unsafe { fmi3FreeFMUState(c, &mut null_mut()) }),
+        row("fmi3SerializedFMUStateSize", "xxxx", Refuses("FMUState is a null pointer"), |c| unsafe { fmi3SerializedFMUStateSize(c, null_mut(), &mut 0) }),
+        row("fmi3SerializeFMUState", "xxxx", Refuses("FMUState is a null pointer"), |c| unsafe { fmi3SerializeFMUState(c, null_mut(), null_mut(), 0) }),
+        row("fmi3DeserializeFMUState", "xxxx", Refuses("0 bytes: expected"), |c| unsafe { fmi3DeserializeFMUState(c, null(), 0, &mut null_mut()) }),
         row("fmi3GetDirectionalDerivative", ".xxx", NotOffered, |c| unsafe { fmi3GetDirectionalDerivative(c, null(), 0, null(), 0, null(), 0, null_mut(), 0) }),
         row("fmi3GetAdjointDerivative", ".xxx", NotOffered, |c| unsafe { fmi3GetAdjointDerivative(c, null(), 0, null(), 0, null(), 0, null_mut(), 0) }),
         row("fmi3EnterConfigurationMode", "x.x.", NotOffered, |c| unsafe { fmi3EnterConfigurationMode(c) }),

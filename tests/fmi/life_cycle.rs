@@ -11,6 +11,8 @@ pub enum Outcome {
     Works,
     /// An optional function: Error, with the capability that is missing.
     NotOffered,
+    /// Error for this reason, since the table has no argument that would do.
+    Refuses(&'static str),
     /// FMI 2.0: "If a status is required which cannot be retrieved by the slave it returns fmi2Discard."
     Discards,
 }
@@ -50,6 +52,10 @@ fn calls_are_refused_exactly_where_the_standards_forbid_them() {
                     ('x', Outcome::NotOffered) => {
                         assert_eq!(status, ERROR, "{context}");
                         assert!(text.contains("not offered"), "{context}");
+                    }
+                    ('x', Outcome::Refuses(why)) => {
+                        assert_eq!(status, ERROR, "{context}");
+                        assert!(text.contains(why), "{context}");
                     }
                     ('.', _) => {
                         assert_eq!(status, ERROR, "{context}");

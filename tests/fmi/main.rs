@@ -12,6 +12,7 @@ mod panic;
 mod random_calls;
 mod refused_references;
 mod refused_values;
+mod saved_state;
 mod steps;
 #[cfg(feature = "tools")]
 mod symbols;

@@ -2,13 +2,14 @@
 
 use maglev_fmu::fmi::{Callback, Instance, Logger};
 use maglev_fmu::unit::{Description, Journal, MagneticBearingPlant, Unit, UnitError};
+use serde::{Deserialize, Serialize};
 
 use super::harness::{
     BOTH, Component, ERROR, FATAL, OK, PLANT, Recorder, Standard, fmi2_logger, fmi3_logger,
 };
 
 /// The plant, with a defect that shows in the third step.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 struct Defective {
     plant: MagneticBearingPlant,
     steps: u32,

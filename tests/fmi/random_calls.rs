@@ -2,6 +2,7 @@
 //! leaves no trace.
 
 use core::ptr::{null, null_mut};
+use std::cell::Cell;
 
 use maglev_fmu::fmi::fmi2::*;
 use maglev_fmu::fmi::fmi3::*;
@@ -9,7 +10,7 @@ use proptest::prelude::*;
 use proptest::sample::select;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
-use super::harness::{CONTROLLER, Component, ERROR, OK, PLANT, Standard};
+use super::harness::{CONTROLLER, Component, ERROR, OK, PLANT, Standard, State};
 use super::{allowed_calls_fmi2, allowed_calls_fmi3};
 
 /// A call with its arguments. Times are relative to where the instance stands.
@@ -42,6 +43,17 @@ enum Call {
         references: Vec<u32>,
     },
     NullArrays,
+    /// In new memory, or in that of the state before.
+    Save {
+        anew: bool,
+    },
+    /// The state saved last, if there is one, or null.
+    Restore,
+    /// Through bytes, one of them perhaps damaged.
+    Deserialise {
+        damage: Option<usize>,
+    },
+    FreeState,
     /// Row of the table of all functions.
     Any {
         row: usize,
@@ -84,13 +96,80 @@ fn call() -> impl Strategy<Value = Call> {
         3 => prop::collection::vec((reference(), number()), 0..5).prop_map(|values| Call::SetReals { values }),
         2 => prop::collection::vec((reference(), -2..200i32), 0..3).prop_map(|values| Call::SetIntegers { values }),
         2 => prop::collection::vec(reference(), 0..6).prop_map(|references| Call::Get { references }),
+        2 => any::<bool>().prop_map(|anew| Call::Save { anew }),
+        3 => Just(Call::Restore),
+        2 => prop::option::of(0..5000usize).prop_map(|damage| Call::Deserialise { damage }),
+        1 => Just(Call::FreeState),
         2 => (0..80usize).prop_map(|row| Call::Any { row }),
     ]
 }
 
-/// Sends a call to an instance that stands at `now`.
+/// An instance with the state saved last.
+struct Actor {
+    component: Component,
+    state: Cell<State>,
+}
+
+impl Actor {
+    fn new(standard: Standard, unit: &str) -> Self {
+        Self { component: Component::new(standard, unit), state: Cell::new(null_mut()) }
+    }
+
+    fn save(&self, anew: bool) -> i32 {
+        if anew {
+            self.free();
+        }
+        let mut state = self.state.get();
+        let status = self.component.get_state(&mut state);
+        self.state.set(state);
+        status
+    }
+
+    fn free(&self) -> i32 {
+        let mut state = self.state.get();
+        let status = self.component.free_state(&mut state);
+        self.state.set(state);
+        status
+    }
+
+    fn deserialise(&self, damage: Option<usize>) -> i32 {
+        let (mut state, mut size) = (self.state.get(), 0);
+        let status = self.component.state_size(state, &mut size);
+        if status != OK {
+            return status;
+        }
+        let mut bytes = vec![0; size];
+        assert_eq!(self.component.serialise_state(state, &mut bytes), OK);
+        if let Some(place) = damage {
+            bytes[place % size] ^= 1;
+        }
+        let status = self.component.deserialise_state(&bytes, &mut state);
+        self.state.set(state);
+        status
+    }
+
+    /// Sends a call to the instance, which stands at `now`.
+    fn send(&self, now: f64, call: &Call) -> i32 {
+        match call {
+            Call::Save { anew } => self.save(*anew),
+            Call::Restore => self.component.set_state(self.state.get()),
+            Call::Deserialise { damage } => self.deserialise(*damage),
+            Call::FreeState => self.free(),
+            _ => send(&self.component, now, call),
+        }
+    }
+}
+
+impl Drop for Actor {
+    fn drop(&mut self) {
+        assert_eq!(self.free(), OK);
+    }
+}
+
+/// Sends a call that needs no state to an instance that stands at `now`.
 fn send(component: &Component, now: f64, call: &Call) -> i32 {
     match call {
+        Call::Save { .. } | Call::Restore | Call::Deserialise { .. } | Call::FreeState => unreachable!(),
         Call::Enter { start, stop } => component.enter_initialization(*start, *stop),
         Call::Exit => component.exit_initialization(),
         Call::Terminate => component.terminate(),
@@ -156,7 +235,8 @@ fn now(component: &Component) -> f64 {
 
 /// The wild one gets every call, the tidy one only those that the wild one did not refuse.
 fn check(standard: Standard, unit: &str, calls: &[Call], counts: &mut [u32; 2]) -> Result<(), TestCaseError> {
-    let (wild, tidy) = (Component::new(standard, unit), Component::new(standard, unit));
+    let (wild_actor, tidy_actor) = (Actor::new(standard, unit), Actor::new(standard, unit));
+    let (wild, tidy) = (&wild_actor.component, &tidy_actor.component);
     // Steps are cheap only if there are few ticks in them.
     let sample_time = (unit == CONTROLLER).then(|| wild.reference("sample_time"));
     for call in calls {
@@ -170,12 +250,12 @@ fn check(standard: Standard, unit: &str, calls: &[Call], counts: &mut [u32; 2]) 
         if shortens {
             continue;
         }
-        let time = now(&wild);
+        let time = now(wild);
         wild.recorder.clear();
-        let status = send(&wild, time, call);
+        let status = wild_actor.send(time, call);
         if status == OK {
             counts[0] += 1;
-            prop_assert_eq!(send(&tidy, time, call), OK, "{:?}", call);
+            prop_assert_eq!(tidy_actor.send(time, call), OK, "{:?}", call);
         } else {
             counts[1] += 1;
             // Discard is for FMI 2.0's status functions.

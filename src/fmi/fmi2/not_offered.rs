@@ -22,18 +22,6 @@ macro_rules! not_offered {
     )*};
 }
 
-not_offered! { "canGetAndSetFMUstate = false":
-    GET_FMU_STATE fmi2GetFMUstate(_state: *mut fmi2FMUstate);
-    SET_FMU_STATE fmi2SetFMUstate(_state: fmi2FMUstate);
-    FREE_FMU_STATE fmi2FreeFMUstate(_state: *mut fmi2FMUstate);
-}
-not_offered! { "canSerializeFMUstate = false":
-    SERIALIZED_FMU_STATE_SIZE fmi2SerializedFMUstateSize(_state: fmi2FMUstate, _size: *mut usize);
-    SERIALIZE_FMU_STATE fmi2SerializeFMUstate(_state: fmi2FMUstate, _bytes: *mut fmi2Byte, _size: usize);
-    DESERIALIZE_FMU_STATE fmi2DeSerializeFMUstate(
-        _bytes: *const fmi2Byte, _size: usize, _state: *mut fmi2FMUstate
-    );
-}
 not_offered! { "providesDirectionalDerivative = false":
     GET_DIRECTIONAL_DERIVATIVE fmi2GetDirectionalDerivative(
         _unknowns: *const fmi2ValueReference, _unknown_count: usize,

@@ -4,10 +4,12 @@ mod co_simulation;
 mod legality;
 mod life_cycle;
 mod not_offered;
+mod state;
 pub mod types;
 mod variables;
 
 pub use co_simulation::*;
 pub use life_cycle::*;
 pub use not_offered::*;
+pub use state::*;
 pub use variables::*;

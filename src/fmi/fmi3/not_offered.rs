@@ -30,18 +30,6 @@ not_offered! { "providesPerElementDependencies = false":
         _kinds: *mut fmi3DependencyKind, _count: usize
     );
 }
-not_offered! { "canGetAndSetFMUState = false":
-    GET_FMU_STATE fmi3GetFMUState(_state: *mut fmi3FMUState);
-    SET_FMU_STATE fmi3SetFMUState(_state: fmi3FMUState);
-    FREE_FMU_STATE fmi3FreeFMUState(_state: *mut fmi3FMUState);
-}
-not_offered! { "canSerializeFMUState = false":
-    SERIALIZED_FMU_STATE_SIZE fmi3SerializedFMUStateSize(_state: fmi3FMUState, _size: *mut usize);
-    SERIALIZE_FMU_STATE fmi3SerializeFMUState(_state: fmi3FMUState, _bytes: *mut fmi3Byte, _size: usize);
-    DESERIALIZE_FMU_STATE fmi3DeserializeFMUState(
-        _bytes: *const fmi3Byte, _size: usize, _state: *mut fmi3FMUState
-    );
-}
 not_offered! { "providesDirectionalDerivatives = false":
     GET_DIRECTIONAL_DERIVATIVE fmi3GetDirectionalDerivative(
         _unknowns: *const fmi3ValueReference, _unknown_count: usize,

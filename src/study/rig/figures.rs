@@ -12,6 +12,9 @@ const TIME: &str = "time [s]";
 /// Length of the enlarged start \[s\].
 const START: f64 = 0.1;
 
+/// When the reference jumps \[s\].
+const STEP: f64 = 2.0;
+
 /// fal for several exponents, in the linear zone and beyond.
 pub fn nonlinear_gain() -> FigureWithData {
     const LINEAR_ZONE: f64 = 0.1;
@@ -56,7 +59,7 @@ pub fn estimates(start_up: &[Run; 2], moving: &[Run; 2], input_gain: f64) -> Fig
     let mut table = Table::default();
     let rows = [
         (start_up, Measurement::Metres, "from zero", Some((0.0, START))),
-        (moving, Measurement::Volts, "steady start", None),
+        (moving, Measurement::Volts, "around the step", Some((STEP - 0.02, STEP + 0.2))),
     ];
     for (runs, measurement, row, range) in rows {
         let truth = runs[0].truth(measurement, input_gain);
@@ -123,7 +126,7 @@ pub fn ranking(comparisons: &[Comparison]) -> FigureWithData {
                 "rms e1, NESO over LESO [1]",
             )
             .x_logarithmic()
-            .logarithmic();
+            .from_to(0.0, 2.0);
             for (reference, (_, name)) in REFERENCES.iter().enumerate() {
                 let row: Vec<&Comparison> = comparisons
                     .iter()
@@ -161,13 +164,18 @@ pub fn ranking(comparisons: &[Comparison]) -> FigureWithData {
 
 /// z1 of NESO with Table 4 by three discretisations at 1 ms, from zero estimates.
 pub fn discretisations(runs: &[(&'static str, Run)]) -> FigureWithData {
-    let mut whole = Panel::new("z1 of NESO, Table 4, T = 1 ms", TIME, "estimated position [mm]");
+    // Room for the legend above.
+    let mut whole = Panel::new("z1 of NESO, Table 4, T = 1 ms", TIME, "estimated position [mm]")
+        .between(0.0, 0.3)
+        .from_to(-20.0, 70.0);
     let mut start = Panel::new("the first 60 ms", TIME, "estimated position [mm]").between(0.0, 0.06);
     let mut table = Table::default();
     for (colour, (name, run)) in runs.iter().enumerate() {
         let points = || run.time.iter().zip(&run.estimate[0]).map(|(time, z)| (*time, 1e3 * z));
-        whole = whole.with(Series::new(*name, colour, Stroke::Solid, points()));
-        start = start.with(Series::new("", colour, Stroke::Solid, points()));
+        // The last lies on the one before.
+        let stroke = if colour == 2 { Stroke::Dashed } else { Stroke::Solid };
+        whole = whole.with(Series::new(*name, colour, stroke, points()));
+        start = start.with(Series::new("", colour, stroke, points()));
         if table.columns.is_empty() {
             table_column(&mut table, "time [s]".to_owned(), run.time.clone());
         }

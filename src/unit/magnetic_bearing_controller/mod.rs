@@ -12,13 +12,16 @@ use super::{Description, Journal, Topic, Unit, UnitError, start_values};
 use crate::controller::{BearingLaw, saturate};
 use crate::observer::{BearingObserver, Estimate};
 use crate::plant::magnetic_bearing::State;
+use serde::{Deserialize, Serialize};
+use serde_big_array::BigArray;
 
 /// Ticks in one step, minutes of computing; more can only be a mistake, as an end time that stands for "never".
 const LARGEST_NUMBER_OF_TICKS: i64 = 1_000_000_000;
 
 /// The controller as a unit.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct MagneticBearingController {
+    #[serde(with = "BigArray")]
     values: [f64; COUNT],
     clock: SampleClock,
     law: BearingLaw,
@@ -154,6 +157,12 @@ impl Unit for MagneticBearingController {
             self.tick(journal);
         }
         Ok(())
+    }
+
+    fn is_consistent(&self) -> bool {
+        self.clock.may_stand_where_it_does(self.values[SAMPLE_TIME])
+            && self.observer.settings() == observer_settings(&self.values)
+            && self.law == law(&self.values)
     }
 
     fn boxed_clone(&self) -> Box<dyn Unit> {

@@ -4,6 +4,7 @@
 mod access;
 mod instantiate;
 mod recorder;
+mod state;
 
 use core::ffi::c_void;
 use std::ffi::CString;
@@ -16,6 +17,7 @@ use maglev_fmu::unit::{Description, UNITS};
 
 pub use instantiate::{instantiate, instantiate_with};
 pub use recorder::{Message, Recorder, fmi2_logger, fmi3_logger};
+pub use state::State;
 
 pub const PLANT: &str = "MagneticBearingPlant";
 pub const CONTROLLER: &str = "MagneticBearingController";

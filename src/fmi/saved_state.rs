@@ -1,0 +1,247 @@
+//! The state of an instance, in memory and as bytes that outlive the process.
+//!
+//! Both forms hold the same payload, written by `postcard`: where the instance stands in its life, then the unit. What
+//! belongs to the importer, the logger and the instance's name, is not part of it. A state thus fits every instance
+//! of the same unit, whatever the version of the standard.
+//!
+//! Serialised, with all numbers in little-endian order:
+//!
+//! ```text
+//! 0   8   mark "maglevFS"
+//! 8   4   version of this format
+//! 12  4   length n of the payload
+//! 16  38  instantiation token of the unit, which tells units and releases apart
+//! 54  4   CRC-32 (IEEE) of bytes 0 to 54 and of the payload
+//! 58  n   payload
+//! ```
+
+use super::{CommunicationPoint, Instance, Phase};
+use crate::unit::persistence::PersistenceError;
+use crate::unit::{Description, UNITS};
+use core::fmt;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+const MARK: [u8; 8] = *b"maglevFS";
+/// To be raised whenever a unit's fields or [`Life`] change.
+const VERSION: u32 = 1;
+
+const TOKEN: core::ops::Range<usize> = 16..54;
+const CHECKSUM: core::ops::Range<usize> = 54..58;
+const HEADER: usize = 58;
+
+/// Bytes of the longest serialised state.
+pub const LONGEST_SAVED_STATE: usize = 4096;
+const CAPACITY: usize = LONGEST_SAVED_STATE - HEADER;
+
+/// Why a state was neither saved nor restored; nothing has changed.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum StateError {
+    #[error("the handle is not that of a saved state: it was freed, or made elsewhere")]
+    NoHandle,
+    #[error("{got} bytes: expected {expected}, the size of this state")]
+    Room { got: usize, expected: usize },
+    #[error("{got} bytes: expected {HEADER} to {LONGEST_SAVED_STATE}")]
+    Length { got: usize },
+    #[error("the bytes begin with {got:02x?}: expected {MARK:02x?}, the mark of a saved state")]
+    Mark { got: [u8; 8] },
+    #[error("a state in version {got} of the format: expected {VERSION}")]
+    Version { got: u32 },
+    #[error("{got} bytes: expected {expected} by what they say of themselves")]
+    Payload { got: usize, expected: usize },
+    #[error("a state of {got}: expected {expected}")]
+    OtherUnit { got: TokenName, expected: &'static str },
+    #[error("checksum {got:08x}: expected {expected:08x}, the bytes are damaged")]
+    Checksum { got: u32, expected: u32 },
+    #[error("a state whose phase and times are not readable")]
+    Life,
+    #[error("a state in the phase \"{got}\", which this instance never reaches")]
+    OtherPhase { got: &'static str },
+    #[error("a state at t = {now} s with start time {start_time} s: expected finite times")]
+    Times { now: f64, start_time: f64 },
+    #[error("a state before the first step in the phase \"{0}\"")]
+    Stale(&'static str),
+    #[error(transparent)]
+    Unit(#[from] PersistenceError),
+}
+
+/// A token as read from bytes, displayed as the name of its unit where it has one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TokenName([u8; TOKEN.end - TOKEN.start]);
+
+impl fmt::Display for TokenName {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let known = UNITS.iter().find(|unit| unit.description.token().as_str().as_bytes() == self.0);
+        match (known, core::str::from_utf8(&self.0)) {
+            (Some(unit), _) => formatter.write_str(unit.description.name),
+            (None, Ok(token)) => write!(formatter, "another release or library, token {token}"),
+            (None, Err(_)) => formatter.write_str("nothing known, its token is no text"),
+        }
+    }
+}
+
+/// Where an instance stands in its life.
+#[derive(Serialize, Deserialize)]
+pub(super) struct Life {
+    pub phase: Phase,
+    pub communication: CommunicationPoint,
+    pub start_time: f64,
+    /// See [`Instance`].
+    pub is_stale: bool,
+}
+
+impl Life {
+    /// Whether an instance that may be in the phases that `reaches` names could have been saved so.
+    fn check(&self, reaches: impl Fn(Phase) -> bool) -> Result<(), StateError> {
+        let Self { phase, start_time, .. } = *self;
+        let now = self.communication.now();
+        if !reaches(phase) {
+            return Err(StateError::OtherPhase { got: phase.name() });
+        }
+        if !(now.is_finite() && start_time.is_finite()) {
+            return Err(StateError::Times { now, start_time });
+        }
+        if self.is_stale && !matches!(phase, Phase::Instantiated | Phase::InitializationMode) {
+            return Err(StateError::Stale(phase.name()));
+        }
+        Ok(())
+    }
+}
+
+/// What a handle `fmi2FMUstate` or `fmi3FMUState` points to.
+#[repr(C)]
+pub struct SavedState {
+    /// [`MARK`], gone once the state is freed.
+    mark: [u8; 8],
+    unit: &'static Description,
+    length: usize,
+    payload: [u8; CAPACITY],
+}
+
+impl SavedState {
+    /// A state that is yet to be saved.
+    pub(super) fn new(unit: &'static Description) -> Self {
+        Self { mark: MARK, unit, length: 0, payload: [0; CAPACITY] }
+    }
+
+    pub(super) fn is_alive(&self) -> bool {
+        self.mark == MARK
+    }
+
+    /// The handle is about to be freed.
+    pub(super) fn invalidate(&mut self) {
+        self.mark = [0; 8];
+        // Nobody may read the mark again, so the compiler would leave the line above out; an importer that uses the
+        // handle all the same should find it gone.
+        core::hint::black_box(&self.mark);
+    }
+
+    fn payload(&self) -> &[u8] {
+        &self.payload[..self.length]
+    }
+
+    /// Bytes of the serialised state.
+    pub fn size(&self) -> usize {
+        HEADER + self.length
+    }
+
+    pub(super) fn serialise(&self, target: &mut [u8]) -> Result<(), StateError> {
+        let (got, expected) = (target.len(), self.size());
+        // An importer may give more room than is needed; what it does not use stays as it is.
+        let target = target.get_mut(..expected).ok_or(StateError::Room { got, expected })?;
+        let (header, payload) = target.split_at_mut(HEADER);
+        payload.copy_from_slice(self.payload());
+        header[..8].copy_from_slice(&MARK);
+        header[8..12].copy_from_slice(&VERSION.to_le_bytes());
+        header[12..16].copy_from_slice(&(self.length as u32).to_le_bytes());
+        header[TOKEN].copy_from_slice(self.unit.token().as_str().as_bytes());
+        let checksum = checksum(header, payload);
+        header[CHECKSUM].copy_from_slice(&checksum.to_le_bytes());
+        Ok(())
+    }
+
+    /// A state of `unit` from bytes. Only the frame is checked here, the contents by [`Instance::verify`].
+    pub(super) fn deserialise(bytes: &[u8], unit: &'static Description) -> Result<Self, StateError> {
+        let got = bytes.len();
+        if !(HEADER..=LONGEST_SAVED_STATE).contains(&got) {
+            return Err(StateError::Length { got });
+        }
+        let (header, payload) = bytes.split_at(HEADER);
+        let mark = array(header, 0);
+        if mark != MARK {
+            return Err(StateError::Mark { got: mark });
+        }
+        let version = u32::from_le_bytes(array(header, 8));
+        if version != VERSION {
+            return Err(StateError::Version { got: version });
+        }
+        let token = array(header, TOKEN.start);
+        if token != unit.token().as_str().as_bytes() {
+            return Err(StateError::OtherUnit { got: TokenName(token), expected: unit.name });
+        }
+        let length = u32::from_le_bytes(array(header, 12)) as usize;
+        if length != payload.len() {
+            return Err(StateError::Payload { got, expected: length.saturating_add(HEADER) });
+        }
+        let found = u32::from_le_bytes(array(header, CHECKSUM.start));
+        let expected = checksum(header, payload);
+        if found != expected {
+            return Err(StateError::Checksum { got: found, expected });
+        }
+        let mut state = Self::new(unit);
+        state.length = length;
+        state.payload[..length].copy_from_slice(payload);
+        Ok(state)
+    }
+}
+
+/// CRC-32 of the header, without the place of the checksum itself, and of the payload: finds every damage to up to
+/// 32 bits in a row, and any other but for one in 4e9.
+fn checksum(header: &[u8], payload: &[u8]) -> u32 {
+    let mut hasher = crc32fast::Hasher::new();
+    hasher.update(&header[..CHECKSUM.start]);
+    hasher.update(payload);
+    hasher.finalize()
+}
+
+fn array<const N: usize>(bytes: &[u8], start: usize) -> [u8; N] {
+    core::array::from_fn(|index| bytes[start + index])
+}
+
+impl Instance {
+    pub(super) fn save(&self, state: &mut SavedState) -> Result<(), StateError> {
+        state.unit = self.unit.description();
+        // Nothing to restore, should the rest fail.
+        state.length = 0;
+        let life = postcard::to_slice(&self.life(), &mut state.payload).map_err(|_| StateError::Life)?.len();
+        state.length = life + self.unit.save(&mut state.payload[life..])?;
+        Ok(())
+    }
+
+    pub(super) fn restore(&mut self, state: &SavedState) -> Result<(), StateError> {
+        let (life, unit) = self.read(state)?;
+        self.unit.restore(unit, !life.is_stale)?;
+        self.resume(life);
+        Ok(())
+    }
+
+    /// Whether [`Instance::restore`] would work.
+    pub(super) fn verify(&self, state: &SavedState) -> Result<(), StateError> {
+        let (life, unit) = self.read(state)?;
+        Ok(self.unit.verify(unit, !life.is_stale)?)
+    }
+
+    /// The life and the bytes of the unit.
+    fn read<'a>(&self, state: &'a SavedState) -> Result<(Life, &'a [u8]), StateError> {
+        let unit = self.unit.description();
+        if !core::ptr::eq(state.unit, unit) {
+            let mut token = [0; TOKEN.end - TOKEN.start];
+            token.copy_from_slice(state.unit.token().as_str().as_bytes());
+            return Err(StateError::OtherUnit { got: TokenName(token), expected: unit.name });
+        }
+        let (life, unit) =
+            postcard::take_from_bytes::<Life>(state.payload()).map_err(|_| StateError::Life)?;
+        life.check(|phase| self.reaches(phase))?;
+        Ok((life, unit))
+    }
+}

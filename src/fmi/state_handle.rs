@@ -1,0 +1,88 @@
+//! Handles of saved states, `fmi2FMUstate` and `fmi3FMUState`, which the standards define alike.
+
+use core::ffi::c_void;
+
+use super::{CallError, Instance, SavedState, StateError};
+
+/// The state behind a handle.
+///
+/// # Safety
+/// `state` is null, or a state that this library made and that was not freed. Others are recognised by their
+/// alignment and their first bytes, which catches mistakes but no malice.
+pub(super) unsafe fn state_behind<'a>(state: *mut c_void) -> Result<&'a SavedState, CallError> {
+    // SAFETY: the caller's promise.
+    unsafe { living(state).map(|state| &*state) }
+}
+
+/// Saves the state of `instance` into the memory behind `*target`, new memory if that is null.
+///
+/// # Safety
+/// `target` is null or points to a handle as for [`state_behind`].
+pub(super) unsafe fn get_state(instance: &mut Instance, target: *mut *mut c_void) -> Result<(), CallError> {
+    // SAFETY: the caller's promise.
+    let target = unsafe { target.as_mut() }.ok_or(CallError::NullPointer("FMUState"))?;
+    if !target.is_null() {
+        // SAFETY: the caller's promise.
+        return Ok(instance.save(unsafe { &mut *living(*target)? })?);
+    }
+    let mut state = Box::new(SavedState::new(instance.unit.description()));
+    instance.save(&mut state)?;
+    *target = Box::into_raw(state).cast();
+    Ok(())
+}
+
+/// Makes a state from bytes, in the memory behind `*target`, in new memory if that is null.
+///
+/// # Safety
+/// As [`get_state`].
+pub(super) unsafe fn deserialise_state(
+    instance: &Instance,
+    bytes: &[u8],
+    target: *mut *mut c_void,
+) -> Result<(), CallError> {
+    // SAFETY: the caller's promise.
+    let target = unsafe { target.as_mut() }.ok_or(CallError::NullPointer("FMUState"))?;
+    let state = SavedState::deserialise(bytes, instance.unit.description())?;
+    instance.verify(&state)?;
+    if target.is_null() {
+        *target = Box::into_raw(Box::new(state)).cast();
+    } else {
+        // SAFETY: the caller's promise.
+        unsafe { *living(*target)? = state };
+    }
+    Ok(())
+}
+
+/// Frees a state; null is ignored.
+///
+/// # Safety
+/// As [`get_state`]; the handle is dead afterwards.
+pub(super) unsafe fn free_state(target: *mut *mut c_void) -> Result<(), CallError> {
+    // SAFETY: the caller's promise.
+    let Some(target) = (unsafe { target.as_mut() }).filter(|target| !target.is_null()) else {
+        return Ok(());
+    };
+    // SAFETY: the caller's promise; made by `Box::into_raw` above, freed once.
+    unsafe {
+        let state = living(*target)?;
+        (*state).invalidate();
+        drop(Box::from_raw(state));
+    }
+    *target = core::ptr::null_mut();
+    Ok(())
+}
+
+/// # Safety
+/// As [`state_behind`].
+unsafe fn living(state: *mut c_void) -> Result<*mut SavedState, CallError> {
+    if state.is_null() {
+        return Err(CallError::NullPointer("FMUState"));
+    }
+    let state = state.cast::<SavedState>();
+    // SAFETY: not null and aligned; readable by the caller's promise.
+    if state.is_aligned() && unsafe { (*state).is_alive() } {
+        Ok(state)
+    } else {
+        Err(StateError::NoHandle.into())
+    }
+}
