@@ -11,9 +11,10 @@
 //! limited and the error would drive it further beyond the limit (conditional integration).
 
 use super::saturate_between;
+use serde::{Deserialize, Serialize};
 
 /// What the derivative is taken of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Derivative {
     /// Of e, as reconstructed: a step of the reference kicks the output.
     Error,
@@ -22,7 +23,7 @@ pub enum Derivative {
 }
 
 /// Gains and limits.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PidSettings {
     /// Kp \[V/V\]
     pub proportional_gain: f64,
@@ -40,7 +41,7 @@ pub struct PidSettings {
 }
 
 /// Memory of the controller.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct DigitalPid {
     /// Ki sum(e T) \[V\]: a change of Ki does not kick the output.
     integral: f64,

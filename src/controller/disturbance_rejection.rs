@@ -12,9 +12,10 @@
 
 use crate::observer::extended_state::ExtendedState;
 use crate::signal::reference_filter::Reference;
+use serde::{Deserialize, Serialize};
 
 /// The law with its parameters.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DisturbanceRejection {
     /// wc \[rad/s\]: a fifth of the observer's bandwidth or less.
     pub bandwidth: f64,

@@ -1,5 +1,6 @@
 //! Control laws, one family per file.
 
+pub mod ball_feedback_linearisation;
 pub mod bearing_feedback;
 mod bearing_law;
 pub mod digital_pid;

@@ -25,9 +25,10 @@
 //! ```
 
 use super::han_function::{self, HanFunction};
+use serde::{Deserialize, Serialize};
 
 /// Estimate z of an extended state observer; y stands for the unit of the measurement.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ExtendedState {
     /// z1 \[y\]
     pub position: f64,
@@ -76,7 +77,7 @@ pub trait Injection: Copy {
 }
 
 /// phi(e) = e
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LinearInjection {
     pub gains: Gains,
 }
@@ -101,7 +102,7 @@ impl Injection for LinearInjection {
 }
 
 /// phi_i(e) = fal(e, alpha_i, delta_i)
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NonlinearInjection {
     pub gains: Gains,
     pub functions: [HanFunction; 3],

@@ -17,6 +17,7 @@
 
 use super::extended_state::{ExtendedState, Gains};
 use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// Terms of the Taylor series of S for a scaled step of at most a half in the maximum norm: remainder below 1e-18.
 const TERMS: u32 = 16;
@@ -70,7 +71,7 @@ fn transition(gains: Gains, duration: f64) -> Transition {
 }
 
 /// One sample of the predictor: z+ = Ad z + Bd (u, y).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ExactPredictor {
     /// Ad, row by row.
     pub transition: [[f64; 3]; 3],
@@ -105,7 +106,7 @@ impl ExactPredictor {
 }
 
 /// One sample of the current form.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ExactCorrector {
     /// G, in 1, 1/s, 1/s2.
     pub gains: [f64; 3],

@@ -8,8 +8,10 @@
 //!
 //! It is continuous, odd, and for al < 1 steep near zero and flat beyond: small errors weigh more than large ones.
 
+use serde::{Deserialize, Serialize};
+
 /// fal with its parameters; de^(al - 1) is computed once.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HanFunction {
     exponent: f64,
     linear_zone: f64,

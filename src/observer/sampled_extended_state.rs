@@ -15,16 +15,17 @@ use super::extended_state::{
     ExtendedState, ExtendedStateModel, Injection, LinearInjection, NonlinearInjection,
 };
 use super::extended_state_exact::{ExactCorrector, ExactPredictor, correct, predict};
+use serde::{Deserialize, Serialize};
 
 /// Linear (LESO) or nonlinear (NESO).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum InjectionChoice {
     Linear(LinearInjection),
     Nonlinear(NonlinearInjection),
 }
 
 /// How the differential equation becomes a difference equation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Discretisation {
     Exact,
     /// With so many sub-steps per sample, at least 1.
@@ -33,14 +34,14 @@ pub enum Discretisation {
 }
 
 /// Which samples an estimate uses.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Form {
     Predictor,
     Current,
 }
 
 /// Everything the observer is told.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ExtendedStateSettings {
     pub injection: InjectionChoice,
     /// b \[y/(s2 V)\]
@@ -65,7 +66,7 @@ pub struct ExtendedStateEstimate {
 }
 
 /// What is computed once per set of parameters.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 enum Step {
     Predictor(ExactPredictor),
     Corrector(ExactCorrector),
@@ -74,7 +75,7 @@ enum Step {
 }
 
 /// The observer with its settings.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ExtendedStateObserver {
     settings: ExtendedStateSettings,
     step: Step,
@@ -87,6 +88,11 @@ impl ExtendedStateObserver {
     /// An observer that starts from `initial`: its estimate at the first sample.
     pub fn new(settings: ExtendedStateSettings, initial: ExtendedState) -> Self {
         Self { settings, step: prepare(&settings), state: initial, previous: None }
+    }
+
+    /// What it was set up with.
+    pub fn settings(&self) -> ExtendedStateSettings {
+        self.settings
     }
 
     /// Goes on with other settings.

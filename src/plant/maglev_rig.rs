@@ -13,13 +13,14 @@
 //! The sensor reads k2 x + eta in volts (from the rig's manual), so that its voltage grows as the ball falls.
 
 use super::end_stops::{self, Contact, Guided};
+use serde::{Deserialize, Serialize};
 
 /// Longest step of the integrator \[s\]: with order 5 far below the double's resolution around the operating point,
 /// where the time constant is 21 ms; close to the coil at full voltage it is 0.12 ms.
 const LONGEST_SUBSTEP: f64 = 5e-5;
 
 /// Position and velocity of the ball.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// x \[m\]
     pub position: f64,
@@ -128,7 +129,7 @@ pub struct LinearModel {
 }
 
 /// Position sensor, linear within its range.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PositionSensor {
     /// k2 \[V/m\]
     pub gain: f64,

@@ -6,8 +6,10 @@
 //!
 //! solved exactly for a command held over each sample.
 
+use serde::{Deserialize, Serialize};
+
 /// Reference, in the unit of the command, and its first two derivatives.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Reference {
     pub position: f64,
     /// per second
@@ -24,7 +26,7 @@ impl Reference {
 }
 
 /// The filter for one bandwidth and sample time.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ReferenceFilter {
     bandwidth: f64,
     sample_time: f64,

@@ -11,6 +11,8 @@ use crate::controller::saturate_between;
 use crate::plant::end_stops::Contact;
 use crate::plant::maglev_rig::{HeldBall, MaglevRig, PositionSensor, State};
 use crate::signal::{GaussianNoise, quantise};
+use serde::{Deserialize, Serialize};
+use serde_big_array::BigArray;
 
 variable_table! {
     TIME = Variable::time();
@@ -126,8 +128,9 @@ const LONGEST_STEP: f64 = 1e4;
 const SENSOR_STREAM: u64 = 1;
 
 /// The plant as a unit.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct MaglevRigPlant {
+    #[serde(with = "BigArray")]
     values: [f64; COUNT],
     state: State,
     contact: Contact,
@@ -240,6 +243,11 @@ impl Unit for MaglevRigPlant {
         (self.state, self.contact) = (state, contact);
         self.publish(voltage, force);
         Ok(())
+    }
+
+    fn is_consistent(&self) -> bool {
+        let stops = self.values[UPPER_STOP]..=self.values[LOWER_STOP];
+        check_finite(&self.state).is_ok() && stops.contains(&self.state.position)
     }
 
     fn boxed_clone(&self) -> Box<dyn Unit> {

@@ -2,6 +2,9 @@
 //! Knows nothing of FMI.
 
 pub mod description;
+mod levitated_ball;
+mod levitated_ball_controller;
+mod levitated_ball_plant;
 mod maglev_rig;
 mod maglev_rig_controller;
 mod maglev_rig_plant;
@@ -19,6 +22,8 @@ pub mod variable;
 use core::fmt;
 
 pub use description::{Description, Token};
+pub use levitated_ball_controller::LevitatedBallController;
+pub use levitated_ball_plant::LevitatedBallPlant;
 pub use maglev_rig_controller::MaglevRigController;
 pub use maglev_rig_plant::MaglevRigPlant;
 pub use magnetic_bearing_controller::MagneticBearingController;
@@ -63,6 +68,8 @@ pub enum UnitError {
     TooManyTicks { ticks: i64, duration: f64, limit: i64 },
     #[error("a step of {duration} s: expected at most {limit} s")]
     StepTooLong { duration: f64, limit: f64 },
+    #[error("{first} and {second} are both {value} {unit}: expected two different numbers")]
+    Equal { first: &'static str, second: &'static str, value: f64, unit: &'static str },
 }
 
 /// An exported unit: a flat array of values, indexed by value reference, and what it takes to advance them.
@@ -117,6 +124,15 @@ pub static MAGNETIC_BEARING_CONTROLLER: UnitType = UnitType {
     description: &magnetic_bearing_controller::DESCRIPTION,
     create: || Box::new(MagneticBearingController::new()),
 };
+pub static LEVITATED_BALL_PLANT: UnitType = UnitType {
+    description: &levitated_ball_plant::DESCRIPTION,
+    create: || Box::new(LevitatedBallPlant::new()),
+};
+pub static LEVITATED_BALL_CONTROLLER: UnitType = UnitType {
+    description: &levitated_ball_controller::DESCRIPTION,
+    create: || Box::new(LevitatedBallController::new()),
+};
+
 pub static MAGLEV_RIG_PLANT: UnitType =
     UnitType { description: &maglev_rig_plant::DESCRIPTION, create: || Box::new(MaglevRigPlant::new()) };
 pub static MAGLEV_RIG_CONTROLLER: UnitType = UnitType {
@@ -125,8 +141,14 @@ pub static MAGLEV_RIG_CONTROLLER: UnitType = UnitType {
 };
 
 /// All units the shared library offers.
-pub static UNITS: &[&UnitType] =
-    &[&MAGNETIC_BEARING_PLANT, &MAGNETIC_BEARING_CONTROLLER, &MAGLEV_RIG_PLANT, &MAGLEV_RIG_CONTROLLER];
+pub static UNITS: &[&UnitType] = &[
+    &MAGNETIC_BEARING_PLANT,
+    &MAGNETIC_BEARING_CONTROLLER,
+    &LEVITATED_BALL_PLANT,
+    &LEVITATED_BALL_CONTROLLER,
+    &MAGLEV_RIG_PLANT,
+    &MAGLEV_RIG_CONTROLLER,
+];
 
 /// Start values of a table.
 fn start_values<const N: usize>(variables: &[variable::Variable; N]) -> [f64; N] {

@@ -35,6 +35,7 @@ pub static NEWTON: UnitOfMeasure =
 pub static AMPERE: UnitOfMeasure = UnitOfMeasure { name: "A", exponents: [0, 0, 0, 1], display: None };
 pub static AMPERE_PER_VOLT: UnitOfMeasure =
     UnitOfMeasure { name: "A/V", exponents: [-1, -2, 3, 2], display: None };
+pub static OHM: UnitOfMeasure = UnitOfMeasure { name: "Ohm", exponents: [1, 2, -3, -2], display: None };
 pub static NEWTON_SQUARE_METRE_PER_SQUARE_AMPERE: UnitOfMeasure =
     UnitOfMeasure { name: "N.m2/A2", exponents: [1, 3, -2, -2], display: None };
 pub static SECOND: UnitOfMeasure = UnitOfMeasure { name: "s", exponents: [0, 0, 1, 0], display: None };

@@ -1,7 +1,8 @@
 //! Which plant and which controller belong together, and how they are wired.
 
 use super::{
-    MAGLEV_RIG_CONTROLLER, MAGLEV_RIG_PLANT, MAGNETIC_BEARING_CONTROLLER, MAGNETIC_BEARING_PLANT, UnitType,
+    LEVITATED_BALL_CONTROLLER, LEVITATED_BALL_PLANT, MAGLEV_RIG_CONTROLLER, MAGLEV_RIG_PLANT,
+    MAGNETIC_BEARING_CONTROLLER, MAGNETIC_BEARING_PLANT, UnitType,
 };
 
 /// A plant with its controller. All wires carry reals.
@@ -30,6 +31,20 @@ pub static BEARING: System = System {
     actuation: &[("voltage", "voltage")],
 };
 
+pub static BALL: System = System {
+    name: "ball",
+    plant: &LEVITATED_BALL_PLANT,
+    controller: &LEVITATED_BALL_CONTROLLER,
+    sensing: &[
+        ("current_measured", "current"),
+        ("position", "state.position"),
+        ("velocity", "state.velocity"),
+        ("flux", "state.flux"),
+        ("voltage_measured", "voltage_applied"),
+    ],
+    actuation: &[("voltage", "voltage")],
+};
+
 pub static RIG: System = System {
     name: "rig",
     plant: &MAGLEV_RIG_PLANT,
@@ -39,7 +54,7 @@ pub static RIG: System = System {
 };
 
 /// All systems, in the order of their units.
-pub static SYSTEMS: &[&System] = &[&BEARING, &RIG];
+pub static SYSTEMS: &[&System] = &[&BEARING, &BALL, &RIG];
 
 impl System {
     /// The system called `name`.

@@ -14,13 +14,16 @@ use crate::controller::saturate_between;
 use crate::observer::extended_state::ExtendedState;
 use crate::observer::sampled_extended_state::ExtendedStateObserver;
 use crate::signal::reference_filter::{Reference, ReferenceFilter};
+use serde::{Deserialize, Serialize};
+use serde_big_array::BigArray;
 
 /// Ticks in one step, minutes of computing; more can only be a mistake, as an end time that stands for "never".
 const LARGEST_NUMBER_OF_TICKS: i64 = 1_000_000_000;
 
 /// The controller as a unit.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct MaglevRigController {
+    #[serde(with = "BigArray")]
     values: [f64; COUNT],
     clock: SampleClock,
     measurement: Measurement,
@@ -184,6 +187,15 @@ impl Unit for MaglevRigController {
             self.tick(journal);
         }
         Ok(())
+    }
+
+    fn is_consistent(&self) -> bool {
+        let values = &self.values;
+        self.clock.may_stand_where_it_does(values[SAMPLE_TIME])
+            && self.observer.settings() == observer_settings(values)
+            && self.measurement == Measurement::from_values(values)
+            && self.reference_filter == ReferenceFilter::new(values[REFERENCE_FILTER], values[SAMPLE_TIME])
+            && self.law == law(values)
     }
 
     fn boxed_clone(&self) -> Box<dyn Unit> {

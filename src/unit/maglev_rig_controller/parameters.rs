@@ -8,6 +8,7 @@ use crate::observer::extended_state::{
 };
 use crate::observer::sampled_extended_state::{Discretisation, ExtendedStateSettings, Form, InjectionChoice};
 use crate::plant::maglev_rig::PositionSensor;
+use serde::{Deserialize, Serialize};
 
 pub(super) fn observer_settings(values: &[f64; COUNT]) -> ExtendedStateSettings {
     let gains = if values[OBSERVER_TUNING] == GAINS {
@@ -39,7 +40,7 @@ pub(super) fn observer_settings(values: &[f64; COUNT]) -> ExtendedStateSettings 
 }
 
 /// How a sensor voltage \[V\] and the observer's measurement relate.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) enum Measurement {
     Volts(PositionSensor),
     Metres(PositionSensor),
@@ -109,7 +110,7 @@ pub(super) fn initial_estimate(values: &[f64; COUNT], measurement: f64) -> Exten
 }
 
 /// The law in use.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) enum Law {
     Pid(PidSettings),
     DisturbanceRejection(DisturbanceRejection),

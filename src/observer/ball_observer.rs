@@ -1,0 +1,432 @@
+//! Flux, velocity and position of the levitated ball from current and voltage.
+//!
+//! "Sensorless control of the levitated ball", sections 3 and 4: the flux is the integral of the induced voltage (6), (7) plus
+//! an unknown offset, which is estimated ([`FluxEstimator`]); velocity and position follow from the flux by Propositions 7
+//! and 8. Normalised as in [`super::flux_regression`], with S = (u - R i) / lam0 and rates w_p = g_p lam0^2, w_y = g_y lam0^2,
+//! these are, l^ being the estimate of l and z^, v^ those of z and v:
+//!
+//! ```text
+//! s' = S                                  l^ = s + theta^                                              (6), (7)
+//! v_I' = W2 (l^^2 - 1) - w_p l^^2 v^ + 2 w_p I S            v^ = v_I - w_p I l^                        (17)
+//! z^' = -v^ - w_y l^^2 z^ + w_y I l^                                                                   (20)
+//! ```
+//!
+//! (17) and (20) are reconstructions, as the regression is. Between samples the voltage is constant and the current nearly an
+//! exponential; [`Course`] follows it more closely than a straight line would.
+
+use super::flux_mixing::{FluxMixing, MixingSettings};
+use super::flux_regression::{FluxRegression, FluxRegressionSettings, Sample, residual_and_slope};
+use super::polynomial_newton::limited_error;
+use crate::plant::levitated_ball::{LevitatedBall, State};
+use crate::signal::FirstOrderHold;
+use serde::{Deserialize, Serialize};
+
+/// What an integral term of the flux estimator blames for a wandering offset.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Adaptation {
+    /// The resistance is not what it is believed to be.
+    Resistance,
+    /// A constant voltage adds to the measured one.
+    VoltageOffset,
+}
+
+/// How the flux offset is estimated.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum FluxEstimator {
+    /// Proposition 6
+    Mixing(MixingSettings),
+    /// Beyond the paper, see [`super::polynomial_newton`].
+    Newton {
+        /// G \[1/s\]
+        gain: f64,
+        /// What to learn with the gain G_I \[1/s2\].
+        adaptation: Option<(Adaptation, f64)>,
+    },
+}
+
+/// What the observer knows of its plant and how fast it is.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BallObserverSettings {
+    pub ball: LevitatedBall,
+    /// T \[s\]
+    pub sample_time: f64,
+    /// Rates of the prefilters \[1/s\], different from each other.
+    pub prefilters: [f64; 2],
+    /// Rates of the four filters of the mixing \[1/s\].
+    pub filters: [f64; 4],
+    pub estimator: FluxEstimator,
+    /// w_p \[1/s\]
+    pub speed_rate: f64,
+    /// w_y \[1/s\]
+    pub position_rate: f64,
+    /// Samples the offset is frozen for until the prefilters have settled.
+    pub held_samples: u32,
+}
+
+/// Where the observer starts.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct InitialBallEstimate {
+    /// chi(0) \[Wb\]
+    pub flux: f64,
+    /// theta^(0) \[Wb\]
+    pub flux_offset: f64,
+    /// \[m/s\]
+    pub velocity: f64,
+    /// \[m\]; without it, from the first current and the flux.
+    pub position: Option<f64>,
+}
+
+/// Result of one sample.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BallEstimate {
+    pub state: State,
+    /// theta^ \[Wb\]
+    pub flux_offset: f64,
+    /// Delta, scaled; 0 unless the estimator is DREM.
+    pub excitation: f64,
+    /// f(theta^), normalised: 0 for the true offset.
+    pub residual: f64,
+    /// Resistance \[Ohm\] and offset of the voltage \[V\], as believed or as learnt.
+    pub resistance: f64,
+    pub voltage_offset: f64,
+    /// Whether the start-up hold is over.
+    pub active: bool,
+    /// Whether the observer had to start again because its numbers had run away.
+    pub restarted: bool,
+}
+
+/// Largest normalised current that is believed: some hundred times what carries the ball.
+const LARGEST_CURRENT: f64 = 1e3;
+/// Largest share of the resistance, or of the voltage that carries the ball at y = 0, that is learnt.
+const LARGEST_ADAPTATION: f64 = 0.25;
+/// Smallest normalised flux to divide by.
+const SMALLEST_FLUX: f64 = 0.2;
+/// Longest sub-step of the prefilters \[s\].
+const LONGEST_SUBSTEP: f64 = 1e-4;
+const MAX_SUBSTEPS: u32 = 16;
+
+/// Constants that follow from the settings.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct Constants {
+    regression: FluxRegressionSettings,
+    /// R c / k \[1/s\]: S = U - `damping` I
+    damping: f64,
+    /// lam0 \[Wb\]
+    flux: f64,
+    /// c lam0 / k \[A\]
+    current: f64,
+    substeps: u32,
+    prefilters: [FirstOrderHold; 2],
+    filters: [FirstOrderHold; 4],
+    /// 1 - e^(-G T)
+    newton_share: f64,
+}
+
+impl Constants {
+    fn new(settings: &BallObserverSettings) -> Self {
+        let BallObserverSettings { ball, sample_time, .. } = settings;
+        let flux = ball.equilibrium_flux();
+        let substeps =
+            (libm::ceil(sample_time / LONGEST_SUBSTEP * (1.0 - 1e-9)) as u32).clamp(1, MAX_SUBSTEPS);
+        let substep = sample_time / f64::from(substeps);
+        Self {
+            regression: FluxRegressionSettings {
+                rates: settings.prefilters,
+                gravity: ball.gravity / ball.gap,
+            },
+            damping: ball.resistance * ball.gap / ball.inductance_constant,
+            flux,
+            current: ball.gap * flux / ball.inductance_constant,
+            substeps,
+            prefilters: settings.prefilters.map(|rate| FirstOrderHold::low_pass(rate, substep)),
+            filters: settings.filters.map(|rate| FirstOrderHold::low_pass(rate, *sample_time)),
+            newton_share: match settings.estimator {
+                FluxEstimator::Newton { gain, .. } => -libm::expm1(-gain * sample_time),
+                FluxEstimator::Mixing(_) => 0.0,
+            },
+        }
+    }
+}
+
+/// The observer with its settings.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BallObserver {
+    settings: BallObserverSettings,
+    initial: InitialBallEstimate,
+    constants: Constants,
+    memory: Memory,
+}
+
+/// What the observer remembers from sample to sample, all normalised.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct Memory {
+    regression: FluxRegression,
+    mixing: FluxMixing,
+    /// theta^
+    offset: f64,
+    /// d, learnt: S = U + d, or S = U - (damping - d) I \[1/s\]
+    learnt: f64,
+    /// v_I
+    integrated_velocity: f64,
+    /// z^
+    gap: f64,
+    /// Samples seen; saved in a fixed number of bytes.
+    #[serde(with = "postcard::fixint::le")]
+    samples: u32,
+}
+
+impl Memory {
+    /// A ball at rest up to the first `current` (normalised).
+    fn start(
+        settings: &BallObserverSettings,
+        initial: &InitialBallEstimate,
+        constants: &Constants,
+        current: f64,
+    ) -> Self {
+        let sample = Sample { flux: initial.flux / constants.flux, current };
+        let offset = initial.flux_offset / constants.flux;
+        let flux = sample.flux + offset;
+        let gap = settings.ball.gap;
+        let regression = FluxRegression::new(sample);
+        Self {
+            mixing: FluxMixing::at_rest(regression.coefficients(&constants.regression)),
+            regression,
+            offset,
+            learnt: 0.0,
+            integrated_velocity: initial.velocity / gap + settings.speed_rate * current * flux,
+            gap: initial.position.map_or(current / flux.max(SMALLEST_FLUX), |position| 1.0 - position / gap),
+            samples: 0,
+        }
+    }
+
+    fn flux(&self) -> f64 {
+        self.regression.sample().flux + self.offset
+    }
+
+    /// v^
+    fn velocity(&self, speed_rate: f64) -> f64 {
+        self.integrated_velocity - speed_rate * self.regression.sample().current * self.flux()
+    }
+}
+
+/// How current and integrated voltage went between two samples, with the voltage constant.
+///
+/// The current is a parabola through both samples; its curvature is the change of I' = -v l + z S over the sample, in which
+/// z = I / l^ and v^ are the observer's. What they are wrong by enters with the square of the sample time.
+struct Course {
+    past: Sample,
+    rise: f64,
+    /// Height of the parabola above the straight line is `bulge` x (1 - x).
+    bulge: f64,
+    /// U, damping and T
+    source: f64,
+    damping: f64,
+    duration: f64,
+}
+
+impl Course {
+    #[inline]
+    fn new(
+        past: Sample,
+        current: f64,
+        (source, damping): (f64, f64),
+        (offset, velocity, gravity): (f64, f64, f64),
+        duration: f64,
+    ) -> Self {
+        let (induced_before, induced_after) = (source - damping * past.current, source - damping * current);
+        let flux_before = past.flux + offset;
+        let flux_after = flux_before + 0.5 * duration * (induced_before + induced_after);
+        let velocity_after = velocity + duration * gravity * (flux_before * flux_before - 1.0);
+        let slope = |flux: f64, velocity: f64, current: f64, induced: f64| {
+            current / flux.max(SMALLEST_FLUX) * induced - velocity * flux
+        };
+        let before = slope(flux_before, velocity, past.current, induced_before);
+        let after = slope(flux_after, velocity_after, current, induced_after);
+        Self {
+            past,
+            rise: current - past.current,
+            bulge: 0.5 * duration * (before - after),
+            source,
+            damping,
+            duration,
+        }
+    }
+
+    /// At the share `x` of the sample.
+    #[inline]
+    fn at(&self, x: f64) -> Sample {
+        let mean_current = self.past.current + x * (0.5 * self.rise + self.bulge * (0.5 - x * (1.0 / 3.0)));
+        Sample {
+            flux: self.past.flux + x * self.duration * (self.source - self.damping * mean_current),
+            current: self.past.current + x * (self.rise + self.bulge * (1.0 - x)),
+        }
+    }
+}
+
+impl BallObserver {
+    /// An observer that has not seen a sample yet.
+    pub fn new(settings: BallObserverSettings, initial: InitialBallEstimate) -> Self {
+        let constants = Constants::new(&settings);
+        let memory = Memory::start(&settings, &initial, &constants, 1.0);
+        Self { settings, initial, constants, memory }
+    }
+
+    /// Whether it was made with `settings`; asked of an observer that was read from bytes.
+    pub fn belongs_to(&self, settings: &BallObserverSettings) -> bool {
+        self.settings == *settings && self.constants == Constants::new(settings)
+    }
+
+    /// Goes on with other settings; the state of the filters stays.
+    pub fn adopt(&mut self, settings: BallObserverSettings) {
+        if settings != self.settings {
+            self.settings = settings;
+            self.constants = Constants::new(&settings);
+        }
+    }
+
+    /// The estimate before any time has passed, given the first `current` \[A\].
+    pub fn start(&mut self, current: f64) -> BallEstimate {
+        let current = self.normalised(current);
+        self.memory = Memory::start(&self.settings, &self.initial, &self.constants, current);
+        self.estimate(0.0, self.residual())
+    }
+
+    /// Takes the sample i\[k\] = `current` \[A\] and the `voltage` \[V\] that acted since the sample before.
+    #[inline(never)]
+    pub fn update(&mut self, current: f64, voltage: f64) -> BallEstimate {
+        let excitation = self.advance(self.normalised(current), voltage / self.constants.flux);
+        let memory = &self.memory;
+        let residual = self.residual();
+        let sum =
+            residual + memory.velocity(self.settings.speed_rate) + memory.gap + memory.learnt + excitation;
+        if sum.is_finite() {
+            return self.estimate(excitation, residual);
+        }
+        // Nothing of what has run away is worth keeping.
+        BallEstimate { restarted: true, ..self.start(current) }
+    }
+
+    fn normalised(&self, current: f64) -> f64 {
+        (current / self.constants.current).clamp(-LARGEST_CURRENT, LARGEST_CURRENT)
+    }
+
+    fn residual(&self) -> f64 {
+        let coefficients = self.memory.regression.coefficients(&self.constants.regression);
+        residual_and_slope(&coefficients, self.memory.offset).0
+    }
+
+    /// S = U - damping I with what has been learnt: U and damping.
+    fn circuit(&self, voltage: f64) -> (f64, f64) {
+        let (damping, learnt) = (self.constants.damping, self.memory.learnt);
+        match self.settings.estimator {
+            FluxEstimator::Newton { adaptation: Some((Adaptation::Resistance, _)), .. } => {
+                (voltage, damping - learnt)
+            }
+            FluxEstimator::Newton { adaptation: Some((Adaptation::VoltageOffset, _)), .. } => {
+                (voltage + learnt, damping)
+            }
+            _ => (voltage, damping),
+        }
+    }
+
+    /// One sample with normalised inputs; returns Delta.
+    #[inline]
+    fn advance(&mut self, current: f64, voltage: f64) -> f64 {
+        let (source, damping) = self.circuit(voltage);
+        let Self { settings, constants, memory, .. } = self;
+        let (t, speed_rate, gravity) =
+            (settings.sample_time, settings.speed_rate, constants.regression.gravity);
+        let past = memory.regression.sample();
+        let flux_before = past.flux + memory.offset;
+        let velocity_before = memory.velocity(speed_rate);
+
+        let beliefs = (memory.offset, velocity_before, gravity);
+        let course = Course::new(past, current, (source, damping), beliefs, t);
+        for substep in 1..=constants.substeps {
+            let share = f64::from(substep) / f64::from(constants.substeps);
+            memory.regression.advance(&constants.prefilters, course.at(share));
+        }
+        let excitation = estimate_offset(settings, constants, memory);
+        memory.samples = memory.samples.saturating_add(1);
+
+        let present = memory.regression.sample();
+        let flux_after = present.flux + memory.offset;
+        let middle = 0.5 * (flux_before + flux_after);
+        let drive = |flux: f64, current: f64| {
+            let induced = source - damping * current;
+            gravity * (flux * flux - 1.0)
+                + speed_rate * current * (speed_rate * flux * flux * flux + 2.0 * induced)
+        };
+        let hold = FirstOrderHold::relaxation(speed_rate * middle * middle, t);
+        memory.integrated_velocity = hold.after(
+            memory.integrated_velocity,
+            drive(flux_before, past.current),
+            drive(flux_after, present.current),
+        );
+
+        let position_rate = settings.position_rate;
+        let hold = if position_rate == speed_rate {
+            hold
+        } else {
+            FirstOrderHold::relaxation(position_rate * middle * middle, t)
+        };
+        memory.gap = hold.after(
+            memory.gap,
+            position_rate * past.current * flux_before - velocity_before,
+            position_rate * present.current * flux_after - memory.velocity(speed_rate),
+        );
+        excitation
+    }
+
+    /// The memory in physical units.
+    fn estimate(&self, excitation: f64, residual: f64) -> BallEstimate {
+        let Self { settings, constants, memory, .. } = self;
+        let ball = &settings.ball;
+        let (source, damping) = self.circuit(0.0);
+        BallEstimate {
+            state: State {
+                position: ball.gap * (1.0 - memory.gap),
+                velocity: ball.gap * memory.velocity(settings.speed_rate),
+                flux: constants.flux * memory.flux(),
+            },
+            flux_offset: constants.flux * memory.offset,
+            excitation,
+            residual,
+            resistance: ball.resistance * (damping / constants.damping),
+            voltage_offset: constants.flux * source,
+            active: memory.samples > settings.held_samples,
+            restarted: false,
+        }
+    }
+}
+
+/// theta^ and d after the newest sample of the regression; returns Delta.
+#[inline]
+fn estimate_offset(settings: &BallObserverSettings, constants: &Constants, memory: &mut Memory) -> f64 {
+    let coefficients = memory.regression.coefficients(&constants.regression);
+    let held = memory.samples < settings.held_samples;
+    match settings.estimator {
+        FluxEstimator::Mixing(mixing) => {
+            if held {
+                memory.mixing = FluxMixing::at_rest(coefficients);
+                return 0.0;
+            }
+            memory.mixing.advance(&constants.filters, coefficients);
+            let equation = memory.mixing.mix();
+            memory.offset = equation.improve(&mixing, memory.offset, settings.sample_time);
+            mixing.excitation_scale * equation.excitation
+        }
+        FluxEstimator::Newton { adaptation, .. } => {
+            if !held {
+                let error = limited_error(&coefficients, memory.offset);
+                memory.offset -= constants.newton_share * error;
+                if let Some((_, gain)) = adaptation {
+                    let limit = LARGEST_ADAPTATION * constants.damping;
+                    let learnt = memory.learnt - gain * settings.sample_time * error;
+                    memory.learnt = learnt.clamp(-limit, limit);
+                }
+            }
+            0.0
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! Steel ball under an electromagnet.
+//!
+//! Paper: "Sensorless control of the levitated ball" (arXiv 1811.07732), equation (1); the available text has lost its
+//! formulas, the signs are those of the book it refers to (Ortega, Loria, Nicklasson, Sira-Ramirez, "Passivity-based
+//! control of Euler-Lagrange systems", chapter 8). With y the position upwards \[m\], p the momentum \[kg m/s\], lam the
+//! flux linkage \[Wb\], u the coil voltage \[V\] and F a disturbing force upwards \[N\], which is not in the paper:
+//!
+//! ```text
+//! lam' = u - R i      y' = p/m      p' = lam^2/(2k) - m g + F      i = (c - y) lam / k                 (1)
+//! ```
+//!
+//! The magnet's face is at y = c.
+
+use super::end_stops::{Contact, Guided, advance};
+use serde::{Deserialize, Serialize};
+
+/// What the ball, the coil and gravity are.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LevitatedBall {
+    /// m \[kg\]
+    pub mass: f64,
+    /// R \[Ohm\]
+    pub resistance: f64,
+    /// k \[N m2/A2\], the inductance is k / (c - y)
+    pub inductance_constant: f64,
+    /// c \[m\], gap at y = 0
+    pub gap: f64,
+    /// g \[m/s2\]
+    pub gravity: f64,
+}
+
+/// State of ball and coil.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct State {
+    /// y \[m\]
+    pub position: f64,
+    /// p / m \[m/s\]
+    pub velocity: f64,
+    /// lam \[Wb\]
+    pub flux: f64,
+}
+
+impl State {
+    /// Whether no component is infinite or NaN.
+    pub fn is_finite(&self) -> bool {
+        self.position.is_finite() && self.velocity.is_finite() && self.flux.is_finite()
+    }
+}
+
+/// What acts on the ball from outside and is held.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Drive {
+    /// u \[V\]
+    pub voltage: f64,
+    /// F \[N\], upwards
+    pub force: f64,
+}
+
+impl LevitatedBall {
+    /// Laboratory rig that all studies assume; the paper's own numbers are not in its text.
+    pub const LABORATORY: Self =
+        Self { mass: 0.0844, resistance: 2.52, inductance_constant: 6.4042e-5, gap: 0.005, gravity: 9.81 };
+
+    /// lam0 = sqrt(2 k m g) \[Wb\]: the flux that carries the ball, wherever it is.
+    pub fn equilibrium_flux(&self) -> f64 {
+        libm::sqrt(2.0 * self.inductance_constant * self.mass * self.gravity)
+    }
+
+    /// The state at rest at `position` \[m\].
+    pub fn equilibrium(&self, position: f64) -> State {
+        State { position, velocity: 0.0, flux: self.equilibrium_flux() }
+    }
+
+    /// i of (1) \[A\]
+    pub fn current(&self, position: f64, flux: f64) -> f64 {
+        (self.gap - position) * flux / self.inductance_constant
+    }
+
+    /// lam^2 / (2 k) \[N\]
+    pub fn magnetic_force(&self, flux: f64) -> f64 {
+        flux * flux / (2.0 * self.inductance_constant)
+    }
+
+    /// Lets `duration` \[s\] pass under a held `drive`, between the magnet's face and `lower_stop` \[m\].
+    #[inline]
+    pub fn advance(
+        &self,
+        lower_stop: f64,
+        state: &mut State,
+        contact: &mut Contact,
+        drive: Drive,
+        duration: f64,
+    ) {
+        let driven = DrivenBall::new(self, lower_stop, drive);
+        let mut components = [state.position, state.velocity, state.flux];
+        advance(&driven, &mut components, contact, duration, self.longest_substep(lower_stop));
+        let [position, velocity, flux] = components;
+        *state = State { position, velocity, flux };
+    }
+
+    /// 0.1 ms, or a tenth of the coil's shortest time constant k / (R (c - y)) if that is less \[s\]. The error of a step is
+    /// then below 3e-10 of the flux' distance from its steady value; it is 1e-13 around y = 0 of the laboratory rig.
+    pub fn longest_substep(&self, lower_stop: f64) -> f64 {
+        (0.1 * self.inductance_constant / (self.resistance * (self.gap - lower_stop))).min(1e-4)
+    }
+}
+
+/// The ball under a held drive, position y, velocity y', flux lam: what [`advance`] moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DrivenBall {
+    gap: f64,
+    lower_stop: f64,
+    voltage: f64,
+    /// R / k
+    damping: f64,
+    /// 1 / (2 k m)
+    lift: f64,
+    /// -g + F / m
+    constant_acceleration: f64,
+}
+
+impl DrivenBall {
+    pub fn new(ball: &LevitatedBall, lower_stop: f64, drive: Drive) -> Self {
+        Self {
+            gap: ball.gap,
+            lower_stop,
+            voltage: drive.voltage,
+            damping: ball.resistance / ball.inductance_constant,
+            lift: 0.5 / (ball.inductance_constant * ball.mass),
+            constant_acceleration: drive.force / ball.mass - ball.gravity,
+        }
+    }
+}
+
+impl Guided<3> for DrivenBall {
+    #[inline(always)]
+    fn rate(&self, &[position, velocity, flux]: &[f64; 3]) -> [f64; 3] {
+        [
+            velocity,
+            self.lift * flux * flux + self.constant_acceleration,
+            self.voltage - self.damping * (self.gap - position) * flux,
+        ]
+    }
+
+    fn stops(&self) -> (f64, f64) {
+        (self.lower_stop, self.gap)
+    }
+}
