@@ -192,7 +192,7 @@ mod tests {
     #[test]
     fn runs_are_complete_finite_and_repeatable() {
         for unit in UNITS {
-            let run = ReferenceRun::of(unit.description).unwrap();
+            let run = ReferenceRun::of(unit.description, StartValues::TABLE).unwrap();
             assert_eq!((run.inputs.rows.len(), run.outputs.rows.len()), (STEPS, STEPS + 1));
             for table in [&run.inputs, &run.outputs] {
                 for (time, values) in &table.rows {
@@ -204,7 +204,7 @@ mod tests {
                     );
                 }
             }
-            let again = ReferenceRun::of(unit.description).unwrap();
+            let again = ReferenceRun::of(unit.description, StartValues::TABLE).unwrap();
             assert_eq!(run.inputs.csv() + &run.outputs.csv(), again.inputs.csv() + &again.outputs.csv());
         }
     }
@@ -212,7 +212,7 @@ mod tests {
     #[test]
     fn a_unit_alone_answers_the_inputs_as_it_did_in_its_loop() {
         for unit in UNITS {
-            let run = ReferenceRun::of(unit.description).unwrap();
+            let run = ReferenceRun::of(unit.description, StartValues::TABLE).unwrap();
             let mut alone = (unit.create)();
             alone.initialise(0.0).unwrap();
             for ((_, inputs), (_, outputs)) in run.inputs.rows.iter().zip(&run.outputs.rows[1..]) {
@@ -229,7 +229,7 @@ mod tests {
     #[test]
     fn every_input_moves() {
         for unit in UNITS {
-            let run = ReferenceRun::of(unit.description).unwrap();
+            let run = ReferenceRun::of(unit.description, StartValues::TABLE).unwrap();
             for (column, variable) in run.inputs.variables.iter().enumerate() {
                 let first = run.inputs.rows[0].1[column];
                 let moves = run.inputs.rows.iter().any(|(_, values)| values[column] != first);

@@ -57,13 +57,14 @@ impl NoiseAware {
     /// E \[m/s\]; [`DIVERGED`] if a run diverges.
     pub fn cost(&self, candidate: &Candidate) -> f64 {
         let settings = settings(candidate);
-        let logarithms: Option<f64> = self
-            .recordings
-            .iter()
-            .map(|recording| velocity_error(&settings, recording))
-            .map(|e| e.map(libm::log))
-            .sum();
-        logarithms.map_or(DIVERGED, |sum| libm::exp(sum / self.recordings.len() as f64))
+        self.mean(|recording| velocity_error(&settings, recording))
+    }
+
+    /// Geometric mean of an error over all runs; [`DIVERGED`] if one has none.
+    pub fn mean(&self, error: impl Fn(&Recording) -> Option<f64>) -> f64 {
+        let logarithms = self.recordings.iter().map(|recording| error(recording).map(libm::log));
+        let sum: Option<f64> = logarithms.sum();
+        sum.map_or(DIVERGED, |sum| libm::exp(sum / self.recordings.len() as f64))
     }
 }
 
