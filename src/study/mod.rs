@@ -11,6 +11,9 @@ mod error;
 mod loop_packages;
 pub mod output;
 pub mod report;
+pub mod rig;
+mod rig_observers;
+pub mod tuning;
 
 use std::path::Path;
 
@@ -77,5 +80,15 @@ pub static EXPERIMENTS: &[Experiment] = &[
         name: "bearing-observers",
         summary: "all observers of the magnetic bearing under noise, next to the Cramer-Rao bound",
         run: bearing_observers::run,
+    },
+    Experiment {
+        name: "rig",
+        summary: "extended state observers of the maglev rig: Table 5, figures 3 and 5, the particle swarm and the claims",
+        run: rig::run,
+    },
+    Experiment {
+        name: "rig-observers",
+        summary: "maglev rig: pushed loops, noise against peaking, the observers of all papers on one plant",
+        run: rig_observers::run,
     },
 ];
