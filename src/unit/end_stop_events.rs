@@ -31,12 +31,35 @@ pub(super) fn indicators<const N: usize>(
     }
 }
 
-/// Slope of a state's start value that is the smallest or largest position if the body starts there.
-pub(super) fn start_slope(contact: Contact, is_initial: bool, is_smallest: bool, is_largest: bool) -> f64 {
-    let moves = match contact {
-        Contact::None => is_initial,
-        Contact::AtSmallestPosition => is_smallest,
-        Contact::AtLargestPosition => is_largest,
-    };
-    f64::from(u8::from(moves))
+/// From which of three parameters a start position comes: the one given, or that of the stop it lies beyond.
+#[derive(Clone, Copy)]
+pub(super) struct Start {
+    pub given: f64,
+    pub smallest: f64,
+    pub largest: f64,
+}
+
+impl Start {
+    /// Partial derivative of the position at the start with respect to the given one, to the smallest and to the
+    /// largest.
+    pub(super) fn position_slopes(self) -> [f64; 3] {
+        if self.given <= self.smallest {
+            [0.0, 1.0, 0.0]
+        } else if self.given >= self.largest {
+            [0.0, 0.0, 1.0]
+        } else {
+            [1.0, 0.0, 0.0]
+        }
+    }
+
+    /// Partial derivative of the velocity at the start with respect to the given one, which a stop takes away unless
+    /// it points inwards.
+    pub(super) fn velocity_slope(self, velocity: f64) -> f64 {
+        let inwards = match self.position_slopes() {
+            [_, 1.0, _] => velocity,
+            [_, _, 1.0] => -velocity,
+            _ => return 1.0,
+        };
+        if inwards > 0.0 { 1.0 } else { 0.0 }
+    }
 }

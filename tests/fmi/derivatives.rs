@@ -125,7 +125,12 @@ proptest! {
             let knowns = reals(&component, |row| matches!(component.variable(row).causality, Causality::Parameter | Causality::Input));
             for (known, share) in knowns.iter().zip(&shares) {
                 let row = component.variable(*known);
-                let start = if row.start == 0.0 { 0.1 * nominal(&component, *known) } else { row.start };
+                let size = 0.1 * nominal(&component, *known);
+                let start = match row.start {
+                    0.0 if row.range.1 <= 0.0 => -size,
+                    0.0 => size,
+                    start => start,
+                };
                 // An ideal sensor, whose reading has a derivative.
                 let value = if row.name == "sensor.resolution" { 0.0 } else { start * share };
                 prop_assert_eq!(component.set_reference(*known, value), OK, "{} {}", row.name, value);

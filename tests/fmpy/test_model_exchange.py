@@ -32,6 +32,24 @@ RUNS = {
         0.1,
         1e-3,
     ),
+    # The ball hangs, is let go, falls onto the lower stop and is drawn up to the magnet.
+    "ball": Run(
+        "LevitatedBallPlant",
+        {},
+        ["voltage", "force"],
+        [(0.0, 0.0, 0.0), (0.15, 0.0, 0.0), (0.15, 30.0, 0.0), (0.4, 30.0, 0.0)],
+        0.4,
+        1e-3,
+    ),
+    # The ball falls onto the lower stop and is drawn up to the coil.
+    "rig": Run(
+        "MaglevRigPlant",
+        {"initial.velocity": 0.01},
+        ["voltage", "force"],
+        [(0.0, 0.5, 0.0), (0.2, 0.5, 0.0), (0.2, 4.0, 0.0), (0.4, 4.0, 0.0)],
+        0.4,
+        1e-3,
+    ),
 }
 
 

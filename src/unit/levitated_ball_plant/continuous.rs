@@ -1,7 +1,7 @@
 //! The ball for importers that integrate it: derivatives, end stops as events, partial derivatives.
 
 use super::*;
-use crate::unit::end_stop_events::{indicators, start_slope};
+use crate::unit::end_stop_events::{Start, indicators};
 
 impl LevitatedBallPlant {
     /// The ball under the present inputs.
@@ -53,11 +53,15 @@ impl LevitatedBallPlant {
 
     /// Partial derivatives of the states at the start with respect to parameters.
     fn start_slope(&self, state: usize, known: usize) -> f64 {
+        let values = &self.values;
+        let (given, smallest, largest) = (values[INITIAL_POSITION], values[LOWER_STOP], values[GAP]);
+        let start = Start { given, smallest, largest };
+        let [by_given, by_smallest, by_largest] = start.position_slopes();
         match (state, known) {
-            (POSITION_OUTPUT, _) => {
-                start_slope(self.contact, known == INITIAL_POSITION, known == LOWER_STOP, known == GAP)
-            }
-            (VELOCITY_OUTPUT, INITIAL_VELOCITY) if self.is_free() => 1.0,
+            (POSITION_OUTPUT, INITIAL_POSITION) => by_given,
+            (POSITION_OUTPUT, LOWER_STOP) => by_smallest,
+            (POSITION_OUTPUT, GAP) => by_largest,
+            (VELOCITY_OUTPUT, INITIAL_VELOCITY) => start.velocity_slope(values[INITIAL_VELOCITY]),
             (FLUX_OUTPUT, INITIAL_FLUX) => 1.0,
             _ => 0.0,
         }

@@ -52,7 +52,10 @@ variable_table! {
         ])
         .describe("Current with sensor noise and resolution, one reading per step, in model exchange per event");
     CONTACT = Variable::held_output("contact", Kind::Boolean)
-        .initially_from(&["initial.position", "gap", "lower_stop"])
+        .initially_from(&[
+            "initial.position", "initial.velocity", "initial.flux", "mass", "inductance_constant", "gravity", "gap",
+            "lower_stop",
+        ])
         .describe("Whether the ball rests on the magnet or on the lower stop");
     POSITION_DERIVATIVE = Variable::local("der(position)", Kind::Real(&VELOCITY), Variability::Continuous)
         .initially_from(&["initial.velocity", "initial.position", "gap", "lower_stop"])
@@ -61,7 +64,7 @@ variable_table! {
         .describe("y', 0 in contact");
     ACCELERATION_LOCAL = Variable::local("acceleration", Kind::Real(&ACCELERATION), Variability::Continuous)
         .initially_from(&[
-            "force", "initial.position", "initial.flux", "mass", "inductance_constant", "gravity", "gap", "lower_stop",
+            "force", "initial.position", "initial.velocity", "initial.flux", "mass", "inductance_constant", "gravity", "gap", "lower_stop",
         ])
         .derivative_of("velocity")
         .depends_on(&[

@@ -1,7 +1,7 @@
 //! The rig for importers that integrate it: derivatives, end stops as events, partial derivatives.
 
 use super::*;
-use crate::unit::end_stop_events::{indicators, start_slope};
+use crate::unit::end_stop_events::{Start, indicators};
 
 impl MaglevRigPlant {
     /// The ball under the present inputs.
@@ -81,11 +81,15 @@ impl MaglevRigPlant {
 
     /// Partial derivatives of the states at the start with respect to parameters.
     fn start_slope(&self, state: usize, known: usize) -> f64 {
+        let values = &self.values;
+        let (given, smallest, largest) = (values[INITIAL_POSITION], values[UPPER_STOP], values[LOWER_STOP]);
+        let start = Start { given, smallest, largest };
+        let [by_given, by_smallest, by_largest] = start.position_slopes();
         match (state, known) {
-            (POSITION, _) => {
-                start_slope(self.contact, known == INITIAL_POSITION, known == UPPER_STOP, known == LOWER_STOP)
-            }
-            (VELOCITY, INITIAL_VELOCITY) if self.is_free() => 1.0,
+            (POSITION, INITIAL_POSITION) => by_given,
+            (POSITION, UPPER_STOP) => by_smallest,
+            (POSITION, LOWER_STOP) => by_largest,
+            (VELOCITY, INITIAL_VELOCITY) => start.velocity_slope(values[INITIAL_VELOCITY]),
             _ => 0.0,
         }
     }

@@ -85,7 +85,7 @@ variable_table! {
             before the last event; wire it to the controller's \
             voltage_applied");
     CONTACT = Variable::held_output("contact", Kind::Boolean)
-        .initially_from(&["initial.position", "upper_stop", "lower_stop"])
+        .initially_from(&["initial.position", "initial.velocity", "gravity", "upper_stop", "lower_stop"])
         .describe("Whether the ball rests on a stop");
     POSITION_DERIVATIVE = Variable::local("der(position)", Kind::Real(&BALL_VELOCITY), Variability::Continuous)
         .initially_from(&["initial.velocity", "initial.position", "upper_stop", "lower_stop"])
@@ -94,7 +94,7 @@ variable_table! {
         .describe("x', 0 at rest on a stop");
     ACCELERATION = Variable::local("acceleration", Kind::Real(&BALL_ACCELERATION), Variability::Continuous)
         .initially_from(&[
-            "voltage", "force", "initial.position", "mass", "gravity", "electromagnetic_constant", "driver_gain",
+            "voltage", "force", "initial.position", "initial.velocity", "mass", "gravity", "electromagnetic_constant", "driver_gain",
             "voltage_min", "voltage_max", "upper_stop", "lower_stop",
         ])
         .derivative_of("velocity")
