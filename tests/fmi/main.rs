@@ -4,6 +4,8 @@ mod harness;
 
 mod allowed_calls_fmi2;
 mod allowed_calls_fmi3;
+#[cfg(feature = "tools")]
+mod capabilities;
 mod concurrency;
 mod dependencies;
 mod derivatives;
