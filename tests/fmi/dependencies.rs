@@ -33,8 +33,10 @@ fn value(variable: &Variable, random: &mut Pcg32) -> f64 {
                 _ if variable.causality == Causality::Input && choice < 0.3 => 10.0 * quantity.nominal,
                 start => start,
             };
-            let sign = if uniform(random) < 0.3 { -1.0 } else { 1.0 };
-            (sign * size * (0.5 + share)).clamp(minimum, maximum)
+            let amount = size * (0.5 + share);
+            let may_be_negative = -amount >= minimum && -amount <= maximum;
+            let value = if may_be_negative && uniform(random) < 0.3 { -amount } else { amount };
+            value.clamp(minimum, maximum)
         }
         Kind::Integer => (minimum + share * 20.0).floor().min(maximum),
         Kind::Boolean => f64::from(u8::from(share > 0.5)),
@@ -49,15 +51,30 @@ fn rows(component: &Component, keep: impl Fn(&Variable) -> bool) -> Vec<u32> {
 /// Pairs (unknown, known) by name of which the unknown moved when the known was changed.
 type Moved = BTreeSet<(&'static str, &'static str)>;
 
+/// Whether a value moved by more than rounding, of which normalised equations leave some.
+fn has_moved(variable: &Variable, before: f64, after: f64) -> bool {
+    let size = match variable.kind {
+        Kind::Real(quantity) => quantity.nominal.max(before.abs()),
+        _ => 0.0,
+    };
+    (before - after).abs() > 1e-9 * size
+}
+
 /// Records which of `unknowns` move when `known` is changed by `change`, which may leave it as it was.
 fn record(component: &Component, unknowns: &[u32], known: u32, moved: &mut Moved, change: impl FnOnce()) {
-    let read =
-        || -> Vec<u64> { unknowns.iter().map(|row| component.get_reference(*row).1.to_bits()).collect() };
+    // Nothing where the unit refuses to be initialised with what it has been given.
+    let read = || -> Vec<Option<f64>> {
+        let values = unknowns.iter().map(|row| component.get_reference(*row));
+        values.map(|(status, value)| (status == OK).then_some(value)).collect()
+    };
     let before = read();
     change();
     for ((unknown, before), after) in unknowns.iter().zip(before).zip(read()) {
-        if before != after {
-            moved.insert((component.variable(*unknown).name, component.variable(known).name));
+        let variable = component.variable(*unknown);
+        if let (Some(before), Some(after)) = (before, after)
+            && has_moved(variable, before, after)
+        {
+            moved.insert((variable.name, component.variable(known).name));
         }
     }
 }
