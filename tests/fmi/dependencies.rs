@@ -24,7 +24,8 @@ fn value(variable: &Variable, random: &mut Pcg32) -> f64 {
         Kind::Real(_) if variable.name == "initial.position" => match choice {
             0.0..0.15 => minimum,
             0.15..0.3 => maximum,
-            0.3..0.7 => (0.012 * share).clamp(minimum, maximum),
+            0.3..0.5 => (0.003 * share).clamp(minimum, maximum),
+            0.5..0.75 => (0.012 * share).clamp(minimum, maximum),
             _ => (0.06 * share - 0.03).clamp(minimum, maximum),
         },
         Kind::Real(quantity) => {
@@ -92,7 +93,7 @@ fn initial_values_follow_from_what_is_declared() {
             let is_listed = matches!(row.causality, Causality::Output | Causality::CalculatedParameter);
             is_listed || row.derivative_of.is_some()
         });
-        for _ in 0..500 {
+        for _ in 0..1500 {
             for known in &knowns {
                 let variable = component.variable(*known);
                 let base =
