@@ -14,8 +14,8 @@ fn uniform(random: &mut Pcg32) -> f64 {
     (f64::from(random.next_u32()) + 0.5) / f64::from(u32::MAX)
 }
 
-/// A value that the variable may have: around its start, of either sign where it may be, for an input also far beyond
-/// what a driver gives and for a position around and beyond the stops.
+/// A value that the variable may have: around its start, of either sign where it may be, for inputs and voltages also
+/// far beyond what a driver gives and for a position around and beyond the stops.
 fn value(variable: &Variable, random: &mut Pcg32) -> f64 {
     let (minimum, maximum) = variable.range;
     let share = uniform(random);
@@ -29,9 +29,10 @@ fn value(variable: &Variable, random: &mut Pcg32) -> f64 {
             _ => (0.06 * share - 0.03).clamp(minimum, maximum),
         },
         Kind::Real(quantity) => {
+            let is_driven = variable.causality == Causality::Input || variable.name.contains("voltage");
             let size = match variable.start {
                 0.0 => 0.1 * quantity.nominal,
-                _ if variable.causality == Causality::Input && choice < 0.3 => 10.0 * quantity.nominal,
+                _ if is_driven && choice < 0.3 => 10.0 * quantity.nominal,
                 start => start,
             };
             let amount = size * (0.5 + share);
