@@ -1,5 +1,6 @@
 //! A step allocates nothing, whatever the observer, the law and the journal.
 
+mod ball;
 mod native;
 mod rig;
 
@@ -7,6 +8,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::fmt::{self, Write};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use maglev_fmu::signal::BallReference;
 use maglev_fmu::unit::{Journal, Silence, Topic, Unit};
 use native::{NativeLoop, OBSERVERS, get, set};
 
@@ -81,7 +83,30 @@ fn steps_allocate_nothing() {
         }
     }
     assert!(listener.0 > 0, "the observers had something to say");
+    for kind in [ball::DREM, ball::POLYNOMIAL_NEWTON, ball::POLYNOMIAL_NEWTON_ADAPTIVE] {
+        ball_steps_allocate_nothing(kind, &mut Listener::default());
+    }
     rig_steps_allocate_nothing(&mut listener);
+}
+
+/// Also when the ball falls onto its stop and when the observer has to start again.
+fn ball_steps_allocate_nothing(kind: f64, listener: &mut Listener) {
+    let settings =
+        [("observer.kind", kind), ("observer.startup_hold", 0.01), ("observer.voltage_source", 2.0)];
+    let mut run = ball::BallLoop::new(BallReference::Sinusoids, 0.1, &[("sensor.noise", 1e-6)], &settings);
+    let before = ALLOCATIONS.load(Ordering::Relaxed);
+    for tick in 0..600 {
+        if tick == 500 {
+            run.controller.adopt_parameters();
+        }
+        run.step();
+    }
+    set(&mut run.controller, "voltage_applied", 1e300);
+    run.controller.advance(1e-4, listener).unwrap();
+    set(&mut run.plant, "voltage", 0.0);
+    run.plant.advance(1.0, listener).unwrap();
+    assert_eq!(ALLOCATIONS.load(Ordering::Relaxed), before, "observer.kind {kind}");
+    assert!(listener.0 > 0, "the observer started again and the ball fell");
 }
 
 /// Every observer of the rig with both laws, one of them diverging, the ball lost and found.

@@ -25,5 +25,15 @@ class Task:
     """2 or 3; None for systems."""
     interface: str = ANY
     """Interface type that the FMU must offer."""
-    limit: str | None = None
-    """What the program's own error says where it cannot do the task with anybody's FMU."""
+    limit: Limit | None = None
+
+
+@dataclass(frozen=True)
+class Limit:
+    """Something that a program cannot do with anybody's FMU."""
+
+    error: str
+    """Part of what it says."""
+    why: str
+    applies: Callable[[Path], bool] = lambda _: True
+    """Whether an FMU is of the kind that the program cannot handle."""

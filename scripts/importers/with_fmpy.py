@@ -66,7 +66,7 @@ def simulate_model_exchange(fmu: Path) -> str:
         reference,
         names,
         fmi_type="ModelExchange",
-        relative_tolerance=1e-9,
+        relative_tolerance=1e-12,
         input=signals(reference, held=True),
     )
     wanted = [[row[reference.outputs.index(name)] for name in names] for row in reference.output_rows[1:]]

@@ -119,10 +119,10 @@ impl LevitatedBall {
         *state = State { position, velocity, flux };
     }
 
-    /// 0.1 ms, or a tenth of the coil's shortest time constant k / (R (c - y)) if that is less \[s\]. The error of a step is
-    /// then below 3e-10 of the flux' distance from its steady value; it is 1e-13 around y = 0 of the laboratory rig.
+    /// 0.1 ms, or a twentieth of the coil's shortest time constant k / (R (c - y)) if that is less \[s\]. The error of a step is
+    /// then below 5e-12 of the distance of the flux from its steady value.
     pub fn longest_substep(&self, lower_stop: f64) -> f64 {
-        (0.1 * self.inductance_constant / (self.resistance * (self.gap - lower_stop))).min(1e-4)
+        (0.05 * self.inductance_constant / (self.resistance * (self.gap - lower_stop))).min(1e-4)
     }
 }
 

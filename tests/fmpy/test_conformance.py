@@ -11,7 +11,7 @@ from pathlib import Path
 import conformance
 import pytest
 from conformance import Outcome
-from importers import Task, systems
+from importers import Limit, Task, systems
 from packages import dist
 
 # What requirements.txt installs everywhere else is less, see there.
@@ -68,5 +68,5 @@ def test_a_program_that_dies_is_an_error() -> None:
 
 
 def test_an_importer_that_learns_something_is_noticed() -> None:
-    task = Task("FMPy", "nothing", lambda _: "exact", limit="no such thing")
+    task = Task("FMPy", "nothing", lambda _: "exact", limit=Limit("no such thing", "never"))
     assert "no such thing" in conformance.run(task, Path()).error
