@@ -17,6 +17,7 @@ mod logging;
 mod model_exchange;
 mod panic;
 mod random_calls;
+mod random_exchange;
 mod refused_references;
 mod refused_values;
 mod saved_state;
