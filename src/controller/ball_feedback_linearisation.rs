@@ -2,12 +2,13 @@
 
 use crate::plant::levitated_ball::{LevitatedBall, State};
 use crate::signal::SmoothReference;
+use serde::{Deserialize, Serialize};
 
 /// Share of the equilibrium flux below which the law does not divide by the flux; assumed, the paper has no guard.
 const SMALLEST_FLUX: f64 = 0.2;
 
 /// What the law knows of ball and coil.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BallFeedbackLinearisation {
     pub ball: LevitatedBall,
     /// rho \[1/s\]: the error of the position has a triple pole at -rho.

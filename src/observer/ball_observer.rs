@@ -19,9 +19,10 @@ use super::flux_regression::{FluxRegression, FluxRegressionSettings, Sample, res
 use super::polynomial_newton::limited_error;
 use crate::plant::levitated_ball::{LevitatedBall, State};
 use crate::signal::FirstOrderHold;
+use serde::{Deserialize, Serialize};
 
 /// What an integral term of the flux estimator blames for a wandering offset.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Adaptation {
     /// The resistance is not what it is believed to be.
     Resistance,
@@ -30,7 +31,7 @@ pub enum Adaptation {
 }
 
 /// How the flux offset is estimated.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum FluxEstimator {
     /// Proposition 6
     Mixing(MixingSettings),
@@ -44,7 +45,7 @@ pub enum FluxEstimator {
 }
 
 /// What the observer knows of its plant and how fast it is.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BallObserverSettings {
     pub ball: LevitatedBall,
     /// T \[s\]
@@ -63,7 +64,7 @@ pub struct BallObserverSettings {
 }
 
 /// Where the observer starts.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct InitialBallEstimate {
     /// chi(0) \[Wb\]
     pub flux: f64,
@@ -105,7 +106,7 @@ const LONGEST_SUBSTEP: f64 = 1e-4;
 const MAX_SUBSTEPS: u32 = 16;
 
 /// Constants that follow from the settings.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Constants {
     regression: FluxRegressionSettings,
     /// R c / k \[1/s\]: S = U - `damping` I
@@ -148,7 +149,7 @@ impl Constants {
 }
 
 /// The observer with its settings.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BallObserver {
     settings: BallObserverSettings,
     initial: InitialBallEstimate,
@@ -157,7 +158,7 @@ pub struct BallObserver {
 }
 
 /// What the observer remembers from sample to sample, all normalised.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Memory {
     regression: FluxRegression,
     mixing: FluxMixing,
@@ -169,7 +170,8 @@ struct Memory {
     integrated_velocity: f64,
     /// z^
     gap: f64,
-    /// Samples seen, counted until the hold is over.
+    /// Samples seen; saved in a fixed number of bytes.
+    #[serde(with = "postcard::fixint::le")]
     samples: u32,
 }
 
@@ -269,6 +271,11 @@ impl BallObserver {
         Self { settings, initial, constants, memory }
     }
 
+    /// Whether it was made with `settings`; asked of an observer that was read from bytes.
+    pub fn belongs_to(&self, settings: &BallObserverSettings) -> bool {
+        self.settings == *settings && self.constants == Constants::new(settings)
+    }
+
     /// Goes on with other settings; the state of the filters stays.
     pub fn adopt(&mut self, settings: BallObserverSettings) {
         if settings != self.settings {
@@ -290,7 +297,8 @@ impl BallObserver {
         let excitation = self.advance(self.normalised(current), voltage / self.constants.flux);
         let memory = &self.memory;
         let residual = self.residual();
-        let sum = residual + memory.velocity(self.settings.speed_rate) + memory.gap + memory.learnt;
+        let sum =
+            residual + memory.velocity(self.settings.speed_rate) + memory.gap + memory.learnt + excitation;
         if sum.is_finite() {
             return self.estimate(excitation, residual);
         }

@@ -13,9 +13,10 @@
 //! a sample, because gamma Delta^2 spans ten decades.
 
 use crate::signal::FirstOrderHold;
+use serde::{Deserialize, Serialize};
 
 /// Gain and scale of the mixed equation.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MixingSettings {
     /// gamma \[1/s\]
     pub gain: f64,
@@ -46,7 +47,7 @@ impl MixedEquation {
 }
 
 /// The twenty low-passes by which the four filters are realised: H_j\[c\] = c - b_j / (p + b_j) \[c\].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FluxMixing {
     /// By filter, then by coefficient.
     low_passes: [[f64; 5]; 4],

@@ -27,9 +27,10 @@
 //! of theta^5 is constant and is divided out: theta^5 + c4 theta^4 + c3 theta^3 + c2 theta^2 + c1 theta + c0 = 0.
 
 use crate::signal::FirstOrderHold;
+use serde::{Deserialize, Serialize};
 
 /// Rates of the low-passes and what the ball falls with.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FluxRegressionSettings {
     /// a_1, a_2 \[1/s\], different from each other
     pub rates: [f64; 2],
@@ -38,7 +39,7 @@ pub struct FluxRegressionSettings {
 }
 
 /// One sample of what is measured, normalised.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
     /// s
     pub flux: f64,
@@ -47,7 +48,7 @@ pub struct Sample {
 }
 
 /// The low-passes of one rate; all have gain one at rest.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Prefilter {
     /// F\[I\]
     current: f64,
@@ -94,7 +95,7 @@ fn force(s: f64, g: f64) -> [f64; 3] {
 }
 
 /// The twelve low-passes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FluxRegression {
     prefilters: [Prefilter; 2],
     sample: Sample,

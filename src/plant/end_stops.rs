@@ -9,9 +9,10 @@
 //! integrator needs to do the same.
 
 use super::runge_kutta;
+use serde::{Deserialize, Serialize};
 
 /// Where the body rests, named by the position and not by up and down, which depend on the rig's axis.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Contact {
     /// It moves freely.
     #[default]

@@ -12,9 +12,10 @@
 //! The magnet's face is at y = c.
 
 use super::end_stops::{Contact, Guided, advance};
+use serde::{Deserialize, Serialize};
 
 /// What the ball, the coil and gravity are.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LevitatedBall {
     /// m \[kg\]
     pub mass: f64,
@@ -29,7 +30,7 @@ pub struct LevitatedBall {
 }
 
 /// State of ball and coil.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// y \[m\]
     pub position: f64,

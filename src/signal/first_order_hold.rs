@@ -1,7 +1,9 @@
 //! First-order relaxation solved exactly for inputs that are straight lines between samples (ramp-invariant).
 
+use serde::{Deserialize, Serialize};
+
 /// One sample of x' = -a x + g with a straight g: x(T) = `decay` x(0) + `past` g(0) + `present` g(T).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FirstOrderHold {
     decay: f64,
     past: f64,

@@ -2,6 +2,9 @@
 //! Knows nothing of FMI.
 
 pub mod description;
+mod levitated_ball;
+mod levitated_ball_controller;
+mod levitated_ball_plant;
 mod magnetic_bearing;
 mod magnetic_bearing_controller;
 mod magnetic_bearing_plant;
@@ -15,6 +18,8 @@ pub mod variable;
 use core::fmt;
 
 pub use description::{Description, Token};
+pub use levitated_ball_controller::LevitatedBallController;
+pub use levitated_ball_plant::LevitatedBallPlant;
 pub use magnetic_bearing_controller::MagneticBearingController;
 pub use magnetic_bearing_plant::MagneticBearingPlant;
 pub use persistence::Persistent;
@@ -54,6 +59,10 @@ pub enum UnitError {
     Diverged { name: &'static str, value: f64, unit: &'static str },
     #[error("{ticks} ticks within one step of {duration} s: expected at most {limit}")]
     TooManyTicks { ticks: i64, duration: f64, limit: i64 },
+    #[error("a step of {duration} s: expected at most {limit} s")]
+    StepTooLong { duration: f64, limit: f64 },
+    #[error("{first} and {second} are both {value} {unit}: expected two different numbers")]
+    Equal { first: &'static str, second: &'static str, value: f64, unit: &'static str },
 }
 
 /// An exported unit: a flat array of values, indexed by value reference, and what it takes to advance them.
@@ -108,9 +117,22 @@ pub static MAGNETIC_BEARING_CONTROLLER: UnitType = UnitType {
     description: &magnetic_bearing_controller::DESCRIPTION,
     create: || Box::new(MagneticBearingController::new()),
 };
+pub static LEVITATED_BALL_PLANT: UnitType = UnitType {
+    description: &levitated_ball_plant::DESCRIPTION,
+    create: || Box::new(LevitatedBallPlant::new()),
+};
+pub static LEVITATED_BALL_CONTROLLER: UnitType = UnitType {
+    description: &levitated_ball_controller::DESCRIPTION,
+    create: || Box::new(LevitatedBallController::new()),
+};
 
 /// All units the shared library offers.
-pub static UNITS: &[&UnitType] = &[&MAGNETIC_BEARING_PLANT, &MAGNETIC_BEARING_CONTROLLER];
+pub static UNITS: &[&UnitType] = &[
+    &MAGNETIC_BEARING_PLANT,
+    &MAGNETIC_BEARING_CONTROLLER,
+    &LEVITATED_BALL_PLANT,
+    &LEVITATED_BALL_CONTROLLER,
+];
 
 /// Start values of a table.
 fn start_values<const N: usize>(variables: &[variable::Variable; N]) -> [f64; N] {

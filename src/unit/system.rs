@@ -1,6 +1,9 @@
 //! Which plant and which controller belong together, and how they are wired.
 
-use super::{MAGNETIC_BEARING_CONTROLLER, MAGNETIC_BEARING_PLANT, UnitType};
+use super::{
+    LEVITATED_BALL_CONTROLLER, LEVITATED_BALL_PLANT, MAGNETIC_BEARING_CONTROLLER, MAGNETIC_BEARING_PLANT,
+    UnitType,
+};
 
 /// A plant with its controller. All wires carry reals.
 #[derive(Debug)]
@@ -28,8 +31,22 @@ pub static BEARING: System = System {
     actuation: &[("voltage", "voltage")],
 };
 
+pub static BALL: System = System {
+    name: "ball",
+    plant: &LEVITATED_BALL_PLANT,
+    controller: &LEVITATED_BALL_CONTROLLER,
+    sensing: &[
+        ("current_measured", "current"),
+        ("position", "state.position"),
+        ("velocity", "state.velocity"),
+        ("flux", "state.flux"),
+        ("voltage_measured", "voltage_applied"),
+    ],
+    actuation: &[("voltage", "voltage")],
+};
+
 /// All systems, in the order of their units.
-pub static SYSTEMS: &[&System] = &[&BEARING];
+pub static SYSTEMS: &[&System] = &[&BEARING, &BALL];
 
 impl System {
     /// The system called `name`.

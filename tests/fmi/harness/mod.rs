@@ -13,6 +13,7 @@ use maglev_fmu::fmi::fmi2::types::fmi2Boolean;
 use maglev_fmu::fmi::fmi2::*;
 use maglev_fmu::fmi::fmi3::types::fmi3Boolean;
 use maglev_fmu::fmi::fmi3::*;
+use maglev_fmu::unit::variable::Causality;
 use maglev_fmu::unit::{Description, UNITS};
 
 pub use instantiate::{instantiate, instantiate_with};
@@ -108,7 +109,8 @@ impl Component {
         }
         if matches!(phase, Phase::Step | Phase::Terminated) {
             assert_eq!(component.exit_initialization(), OK);
-            let input = if unit == PLANT { "voltage" } else { "position" };
+            let mut variables = component.description.variables.iter();
+            let input = variables.find(|variable| variable.causality == Causality::Input).unwrap().name;
             for k in 0..5 {
                 assert_eq!(component.set(input, 1e-3 * f64::from(k)), OK);
                 assert_eq!(component.step(f64::from(k) * 1e-3, 1e-3), OK);

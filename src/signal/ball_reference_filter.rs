@@ -1,8 +1,10 @@
 //! Reference of the levitated ball: (24), (25) of its paper smooth a reference "filtered" by an unprinted filter. Here it is
 //! y* = (w / (p + w))^3 r, the lowest order whose derivatives up to the third, which the law needs, are known.
 
+use serde::{Deserialize, Serialize};
+
 /// Reference position and its derivatives.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SmoothReference {
     /// y* \[m\]
     pub position: f64,
@@ -15,15 +17,15 @@ pub struct SmoothReference {
 }
 
 /// Three equal low-passes in a chain, exact for a reference that is a straight line between samples.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ReferenceFilter {
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BallReferenceFilter {
     /// Outputs of the three low-passes \[m\].
     stages: [f64; 3],
     /// r at the last sample \[m\].
     input: f64,
 }
 
-impl ReferenceFilter {
+impl BallReferenceFilter {
     /// A filter at rest at `position` \[m\].
     pub fn new(position: f64) -> Self {
         Self { stages: [position; 3], input: position }
@@ -76,7 +78,7 @@ mod tests {
 
     #[test]
     fn step_response_is_that_of_a_triple_pole() {
-        let mut filter = ReferenceFilter::new(0.0);
+        let mut filter = BallReferenceFilter::new(0.0);
         filter.present(1.0);
         for sample in 1..=200 {
             filter.update(1.0, RATE, 1e-3);
@@ -91,7 +93,7 @@ mod tests {
 
     #[test]
     fn ramp_is_followed_with_the_lag_of_three_stages() {
-        let mut filter = ReferenceFilter::new(0.0);
+        let mut filter = BallReferenceFilter::new(0.0);
         for sample in 1..=1000 {
             filter.update(2e-3 * f64::from(sample), RATE, 1e-3);
         }
