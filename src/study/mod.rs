@@ -3,6 +3,7 @@
 //! An experiment opens packages with the [`crate::host`], runs them, and hands back figures and claims; everything
 //! that is written to disk goes through [`output`].
 
+pub mod ball;
 pub mod bearing;
 pub mod bearing_observers;
 pub mod chart;
@@ -77,5 +78,10 @@ pub static EXPERIMENTS: &[Experiment] = &[
         name: "bearing-observers",
         summary: "all observers of the magnetic bearing under noise, next to the Cramer-Rao bound",
         run: bearing_observers::run,
+    },
+    Experiment {
+        name: "ball",
+        summary: "sensorless control of a levitated ball: figures 2 to 7 and the claims",
+        run: ball::run,
     },
 ];
