@@ -4,6 +4,7 @@
 //! that is written to disk goes through [`output`].
 
 pub mod ball;
+pub mod ball_monte_carlo;
 pub mod bearing;
 pub mod bearing_observers;
 pub mod chart;
@@ -83,5 +84,10 @@ pub static EXPERIMENTS: &[Experiment] = &[
         name: "ball",
         summary: "sensorless control of a levitated ball: figures 2 to 7 and the claims",
         run: ball::run,
+    },
+    Experiment {
+        name: "ball-monte-carlo",
+        summary: "the levitated ball's estimators under wrong parameters and noise, 1000 runs each",
+        run: ball_monte_carlo::run,
     },
 ];
