@@ -9,7 +9,8 @@ use std::path::{Path, PathBuf};
 use maglev_fmu::package::{
     FmiVersion, GenerationTime, Library, PackageError, build, icon_png, model_description,
 };
-use maglev_fmu::unit::UNITS;
+use maglev_fmu::unit::system::SYSTEMS;
+use maglev_fmu::unit::{UNITS, UnitType};
 use zip::ZipArchive;
 
 const TIME: u32 = 1_234_567_891;
@@ -36,9 +37,10 @@ fn packages(time: u32) -> BTreeMap<PathBuf, Vec<u8>> {
         .iter()
         .map(|file| (file.path.strip_prefix(&out).unwrap().to_owned(), fs::read(&file.path).unwrap()))
         .collect();
-    assert_eq!(packages.len(), 2 * UNITS.len());
+    assert_eq!(packages.len(), 2 * UNITS.len() + SYSTEMS.len());
+    // Nothing but the packages: no temporary file is left.
+    assert_eq!(fs::read_dir(&out).unwrap().count(), FmiVersion::ALL.len() + SYSTEMS.len());
     for version in FmiVersion::ALL {
-        // Nothing but the packages: no temporary file is left.
         assert_eq!(fs::read_dir(out.join(version.directory())).unwrap().count(), UNITS.len());
     }
     assert!(written.iter().all(|file| file.size as u64 == fs::metadata(&file.path).unwrap().len()));
@@ -66,23 +68,28 @@ fn archives_hold_what_the_standards_name() {
             let name = unit.description.name;
             let bytes = &packages[&Path::new(version.directory()).join(name).with_extension("fmu")];
             let mut archive = ZipArchive::new(Cursor::new(bytes)).unwrap();
-            let (platforms, icons) = match version {
-                FmiVersion::Two => (["aarch64-linux", "linux64"], vec!["model.png"]),
-                FmiVersion::Three => (
-                    ["aarch64-linux", "x86_64-linux"],
-                    vec![
-                        "terminalsAndIcons/icon.png",
-                        "terminalsAndIcons/icon.svg",
-                        "terminalsAndIcons/terminalsAndIcons.xml",
-                    ],
-                ),
+            let (platforms, own_icon) = match version {
+                FmiVersion::Two => (["aarch64-linux", "linux64"], Some("model.png")),
+                FmiVersion::Three => (["aarch64-linux", "x86_64-linux"], None),
             };
             let mut expected: Vec<String> =
                 platforms.map(|platform| format!("binaries/{platform}/{name}.so")).to_vec();
-            expected.extend(icons.iter().map(|path| (*path).to_owned()));
+            expected.extend(own_icon.map(str::to_owned));
+            let in_loop = |other: &UnitType| std::ptr::eq(other, *unit);
+            let loops = SYSTEMS.iter().filter(|system| in_loop(system.plant) || in_loop(system.controller));
+            let diagrams: Vec<String> =
+                loops.map(|system| format!("documentation/{}.svg", system.name)).collect();
+            expected.extend(diagrams.clone());
             for path in [
                 "modelDescription.xml",
+                "terminalsAndIcons/icon.png",
+                "terminalsAndIcons/icon.svg",
+                "terminalsAndIcons/terminalsAndIcons.xml",
+                "extra/org.fmi-standard.fmi-ls-ref/fmi-ls-manifest.xml",
+                "extra/org.fmi-standard.fmi-ls-ref/reference-input.csv",
+                "extra/org.fmi-standard.fmi-ls-ref/reference-output.csv",
                 "documentation/index.html",
+                "documentation/reference-run.svg",
                 "documentation/licenses/license.txt",
                 "documentation/licenses/THIRD-PARTY.txt",
                 "documentation/licenses/Apache-2.0.txt",
@@ -98,10 +105,15 @@ fn archives_hold_what_the_standards_name() {
             let time = Some(GenerationTime::from_epoch_seconds(TIME));
             let description = model_description(unit.description, version, time).unwrap();
             assert_eq!(file(&mut archive, "modelDescription.xml"), description.as_bytes());
-            assert!(file(&mut archive, icons[0]).starts_with(b"\x89PNG\r\n\x1a\n"));
+            for icon in own_icon.into_iter().chain(["terminalsAndIcons/icon.png"]) {
+                assert!(file(&mut archive, icon).starts_with(b"\x89PNG\r\n\x1a\n"));
+            }
             let page = String::from_utf8(file(&mut archive, "documentation/index.html")).unwrap();
             for variable in unit.description.variables {
                 assert!(page.contains(&format!("<code>{}</code>", variable.name)), "{}", variable.name);
+            }
+            for diagram in &diagrams {
+                assert!(page.contains(diagram.strip_prefix("documentation/").unwrap()), "{diagram}");
             }
             assert!(
                 page.contains("2009-02-13T23:31:31Z") && page.contains(unit.description.token().as_str())
@@ -173,7 +185,9 @@ fn times_before_1980_do_not_fit_an_archive() {
     for bytes in packages(0).values() {
         let mut archive = ZipArchive::new(Cursor::new(bytes)).unwrap();
         assert_eq!(archive.by_index(0).unwrap().last_modified().unwrap().year(), 1980);
-        let text = String::from_utf8(file(&mut archive, "modelDescription.xml")).unwrap();
+        let is_system = archive.index_for_name("SystemStructure.ssd").is_some();
+        let description = if is_system { "SystemStructure.ssd" } else { "modelDescription.xml" };
+        let text = String::from_utf8(file(&mut archive, description)).unwrap();
         assert!(text.contains("generationDateAndTime=\"1970-01-01T00:00:00Z\""));
     }
 }

@@ -31,7 +31,7 @@ fn build_packs_and_reports() {
     let report = text(&output.stdout);
     assert!(output.status.success(), "{}", text(&output.stderr));
     assert!(report.contains("library.so for x86_64-linux, source as of 2009-02-13T23:31:30Z"), "{report}");
-    for package in ["fmi2/MagneticBearingPlant.fmu", "fmi3/MagneticBearingController.fmu"] {
+    for package in ["fmi2/MagneticBearingPlant.fmu", "fmi3/MagneticBearingController.fmu", "bearing.ssp"] {
         assert!(directory.path().join("dist").join(package).is_file());
         assert!(report.replace('\\', "/").contains(package), "{report}");
     }

@@ -1,11 +1,14 @@
 //! A step allocates nothing, whatever the observer, the law and the journal.
 
+mod ball;
 mod native;
+mod rig;
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::fmt::{self, Write};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use maglev_fmu::signal::BallReference;
 use maglev_fmu::unit::{Journal, Silence, Topic, Unit};
 use native::{NativeLoop, OBSERVERS, get, set};
 
@@ -80,4 +83,63 @@ fn steps_allocate_nothing() {
         }
     }
     assert!(listener.0 > 0, "the observers had something to say");
+    for kind in [ball::DREM, ball::POLYNOMIAL_NEWTON, ball::POLYNOMIAL_NEWTON_ADAPTIVE] {
+        ball_steps_allocate_nothing(kind, &mut Listener::default());
+    }
+    rig_steps_allocate_nothing(&mut listener);
+}
+
+/// Also when the ball falls onto its stop and when the observer has to start again.
+fn ball_steps_allocate_nothing(kind: f64, listener: &mut Listener) {
+    let settings =
+        [("observer.kind", kind), ("observer.startup_hold", 0.01), ("observer.voltage_source", 2.0)];
+    let mut run = ball::BallLoop::new(BallReference::Sinusoids, 0.1, &[("sensor.noise", 1e-6)], &settings);
+    let before = ALLOCATIONS.load(Ordering::Relaxed);
+    for tick in 0..600 {
+        if tick == 500 {
+            run.controller.adopt_parameters();
+        }
+        run.step();
+    }
+    set(&mut run.controller, "voltage_applied", 1e300);
+    run.controller.advance(1e-4, listener).unwrap();
+    set(&mut run.plant, "voltage", 0.0);
+    run.plant.advance(1.0, listener).unwrap();
+    assert_eq!(ALLOCATIONS.load(Ordering::Relaxed), before, "observer.kind {kind}");
+    assert!(listener.0 > 0, "the observer started again and the ball fell");
+}
+
+/// Every observer of the rig with both laws, one of them diverging, the ball lost and found.
+fn rig_steps_allocate_nothing(listener: &mut Listener) {
+    for index in 0..48 {
+        let parameters = [
+            ("observer.kind", index % 2),
+            ("observer.discretisation", index / 2 % 4),
+            ("observer.form", index / 8 % 2),
+            ("observer.measurement", index / 16 % 2),
+            ("controller.kind", index / 32),
+        ];
+        let mut controller = parameters.map(|(name, item)| (name, f64::from(item + 1))).to_vec();
+        controller.extend([("observer.bandwidth", 3000.0), ("observer.exponent[2]", 0.7)]);
+        let mut run = rig::units::RigLoop::new(&[("sensor.noise", 1e-3)], &controller);
+        let before = (ALLOCATIONS.load(Ordering::Relaxed), listener.0);
+        for tick in 0..200 {
+            for (from, to) in
+                [("sensor_voltage_measured", "sensor_voltage"), ("voltage_measured", "voltage_applied")]
+            {
+                let value = get(&run.plant, from);
+                set(&mut run.controller, to, value);
+            }
+            if tick == 100 {
+                run.controller.adopt_parameters();
+            }
+            run.controller.advance(1e-3, listener).unwrap();
+            let voltage = get(&run.controller, "voltage");
+            set(&mut run.plant, "voltage", voltage);
+            set(&mut run.plant, "force", 5.0 * f64::from(u8::from(tick > 50)));
+            run.plant.advance(1e-3, listener).unwrap();
+        }
+        assert_eq!(ALLOCATIONS.load(Ordering::Relaxed), before.0, "{controller:?}");
+        assert!(listener.0 > before.1, "the lost ball is worth a remark");
+    }
 }

@@ -172,6 +172,8 @@ struct Memory {
     learnt: f64,
     /// v_I
     integrated_velocity: f64,
+    /// v^ less the one of the sample before
+    velocity_rise: f64,
     /// z^
     gap: f64,
     /// Samples seen; saved in a fixed number of bytes.
@@ -208,6 +210,7 @@ impl Memory {
             offset,
             learnt: 0.0,
             integrated_velocity: initial.velocity / gap + settings.speed_rate * current * flux,
+            velocity_rise: 0.0,
             gap: initial.position.map_or(current / flux.max(SMALLEST_FLUX), |position| 1.0 - position / gap),
             samples: 0,
         }
@@ -226,7 +229,8 @@ impl Memory {
 /// How current and integrated voltage went between two samples, with the voltage constant.
 ///
 /// The current is a parabola through both samples; its curvature is the change of I' = -v l + z S over the sample, in which
-/// z = I / l^ and v^ are the observer's. What they are wrong by enters with the square of the sample time.
+/// z = I / l^ and v^ are the observer's and v^ is taken to change as over the sample before. What they are wrong by enters
+/// with the square of the sample time, and not at all at rest.
 struct Course {
     past: Sample,
     rise: f64,
@@ -244,13 +248,12 @@ impl Course {
         past: Sample,
         current: f64,
         (source, damping): (f64, f64),
-        (offset, velocity, gravity): (f64, f64, f64),
+        [offset, velocity, velocity_after]: [f64; 3],
         duration: f64,
     ) -> Self {
         let (induced_before, induced_after) = (source - damping * past.current, source - damping * current);
         let flux_before = past.flux + offset;
         let flux_after = flux_before + 0.5 * duration * (induced_before + induced_after);
-        let velocity_after = velocity + duration * gravity * (flux_before * flux_before - 1.0);
         let slope = |flux: f64, velocity: f64, current: f64, induced: f64| {
             current / flux.max(SMALLEST_FLUX) * induced - velocity * flux
         };
@@ -354,7 +357,7 @@ impl BallObserver {
         let flux_before = past.flux + memory.offset;
         let velocity_before = memory.velocity(speed_rate);
 
-        let beliefs = (memory.offset, velocity_before, gravity);
+        let beliefs = [memory.offset, velocity_before, velocity_before + memory.velocity_rise];
         let course = Course::new(past, current, (source, damping), beliefs, t);
         for substep in 1..=constants.substeps {
             let share = f64::from(substep) / f64::from(constants.substeps);
@@ -378,6 +381,9 @@ impl BallObserver {
             drive(flux_after, present.current),
         );
 
+        let velocity_after = memory.velocity(speed_rate);
+        memory.velocity_rise = velocity_after - velocity_before;
+
         let position_rate = settings.position_rate;
         let hold = if position_rate == speed_rate {
             hold
@@ -387,7 +393,7 @@ impl BallObserver {
         memory.gap = hold.after(
             memory.gap,
             position_rate * past.current * flux_before - velocity_before,
-            position_rate * present.current * flux_after - memory.velocity(speed_rate),
+            position_rate * present.current * flux_after - velocity_after,
         );
         excitation
     }

@@ -2,14 +2,18 @@
 
 pub mod ball_observer;
 mod bearing_observer;
+pub mod extended_state;
+pub mod extended_state_exact;
 pub mod factored_covariance;
 pub mod flux_mixing;
 pub mod flux_regression;
+pub mod han_function;
 pub mod kalman;
 mod least_squares_window;
 pub mod newton;
 pub mod polynomial_newton;
 pub mod reduced_newton;
+pub mod sampled_extended_state;
 mod saved_count;
 mod square_window;
 mod step_length;

@@ -102,10 +102,10 @@ mod tests {
 
     #[test]
     fn tables_replace_what_is_between_the_markers() {
-        let readme = format!("# Title\n\n{BEGIN}\nold\n{END}\n\nMore.\n");
+        let readme = format!("# Title\n\n{BEGIN}\nstale rows\n{END}\n\nMore.\n");
         let renewed = readme_with_tables(&readme).unwrap();
         assert!(renewed.starts_with("# Title\n\n") && renewed.ends_with("\n\nMore.\n"));
-        assert!(!renewed.contains("old"));
+        assert!(!renewed.contains("stale rows"));
         assert!(renewed.contains("| `observer.kind` | parameter | enumeration | newton |"));
         assert!(renewed.contains("epsilon x3 + x3 \\|x3\\| |"));
         assert_eq!(readme_with_tables(&renewed).as_deref(), Some(renewed.as_str()));

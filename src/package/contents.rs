@@ -4,7 +4,12 @@ use std::borrow::Cow;
 
 use super::documentation::documentation;
 use super::icon::{icon_png, icon_svg};
+use super::loop_diagram::loop_diagram;
 use super::model_description::{model_description, terminals_and_icons};
+use super::plug::Plug;
+use super::reference_run::ReferenceRun;
+use super::related_files::related_files;
+use super::run_figure::run_figure;
 use super::{FmiVersion, GenerationTime, Library, PackageError, licenses};
 use crate::unit::Description;
 
@@ -16,6 +21,21 @@ pub struct Entry<'a> {
     pub bytes: Cow<'a, [u8]>,
     /// Whether the file is a program or library.
     pub executable: bool,
+}
+
+impl<'a> Entry<'a> {
+    /// A file that is no program.
+    pub fn document(path: String, bytes: Cow<'a, [u8]>) -> Self {
+        Self { path, bytes, executable: false }
+    }
+}
+
+/// File name of the figure of the reference run, beside the documentation's first page.
+pub const RUN_FIGURE: &str = "reference-run.svg";
+
+/// File name of the block diagram of a loop, beside the documentation's first page.
+pub fn diagram_name(system: &str) -> String {
+    format!("{system}.svg")
 }
 
 /// All files of the package of one unit, sorted by path.
@@ -33,18 +53,26 @@ pub fn contents<'a>(
         ("documentation/licenses/THIRD-PARTY.txt", Cow::Borrowed(licenses::THIRD_PARTY.as_bytes())),
         ("documentation/licenses/Apache-2.0.txt", Cow::Borrowed(licenses::APACHE_2_0.as_bytes())),
     ];
-    match version {
-        FmiVersion::Two => files.push(("model.png", Cow::Owned(icon_png(name)?))),
-        FmiVersion::Three => files.extend([
-            ("terminalsAndIcons/icon.png", Cow::Owned(icon_png(name)?)),
-            ("terminalsAndIcons/icon.svg", Cow::Borrowed(icon_svg(name)?.as_bytes())),
-            ("terminalsAndIcons/terminalsAndIcons.xml", owned(terminals_and_icons(description)?)),
-        ]),
+    // FMI 2.0 has an icon of its own; terminals it takes from FMI 3.0 (text of 2.0.5, section 2.3).
+    files.extend([
+        ("terminalsAndIcons/icon.png", Cow::Owned(icon_png(name)?)),
+        ("terminalsAndIcons/icon.svg", Cow::Borrowed(icon_svg(name)?.as_bytes())),
+        ("terminalsAndIcons/terminalsAndIcons.xml", owned(terminals_and_icons(description)?)),
+    ]);
+    if version == FmiVersion::Two {
+        files.push(("model.png", Cow::Owned(icon_png(name)?)));
     }
-    let mut entries: Vec<Entry<'a>> = files
-        .into_iter()
-        .map(|(path, bytes)| Entry { path: path.to_owned(), bytes, executable: false })
-        .collect();
+    let mut entries: Vec<Entry<'a>> =
+        files.into_iter().map(|(path, bytes)| Entry::document(path.to_owned(), bytes)).collect();
+    for plug in Plug::all_of(description) {
+        let path = format!("documentation/{}", diagram_name(plug.system.name));
+        entries.push(Entry::document(path, owned(loop_diagram(plug.system, Some(description)))));
+    }
+    let run =
+        ReferenceRun::of(description).map_err(|source| PackageError::ReferenceRun { unit: name, source })?;
+    entries.push(Entry::document(format!("documentation/{RUN_FIGURE}"), owned(run_figure(&run))));
+    let related = related_files(description, &run)?;
+    entries.extend(related.map(|(path, text)| Entry::document(path, owned(text))));
     entries.extend(libraries.iter().map(|library| {
         let platform = library.platform();
         Entry {
@@ -57,6 +85,6 @@ pub fn contents<'a>(
     Ok(entries)
 }
 
-fn owned(text: String) -> Cow<'static, [u8]> {
+pub fn owned(text: String) -> Cow<'static, [u8]> {
     Cow::Owned(text.into_bytes())
 }

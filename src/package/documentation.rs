@@ -4,17 +4,22 @@ use std::borrow::Cow;
 
 use quick_xml::escape::escape;
 
+use super::contents::{RUN_FIGURE, diagram_name};
 use super::model_description::enumerations;
+use super::plug::Plug;
+use super::related_files::{DIRECTORY, INPUT, OUTPUT};
 use super::{FmiVersion, GenerationTime, licenses, variable_text};
 use crate::unit::Description;
 
-const STYLE: &str = "\
+pub(super) const STYLE: &str = "\
 body { font-family: sans-serif; line-height: 1.45; max-width: 70em; margin: 2em auto; padding: 0 1em; color: #1d2733; }
 h1, h2 { color: #1f4e79; }
 table { border-collapse: collapse; width: 100%; font-size: 0.9em; }
 th, td { border-bottom: 1px solid #d5dde5; padding: 0.3em 0.6em; text-align: left; vertical-align: top; }
 th { background: #eef3f8; }
 code { font-family: monospace; white-space: nowrap; }
+img { max-width: 100%; }
+h1 img { height: 1.6em; vertical-align: middle; }
 ";
 
 /// The documentation page, self-contained.
@@ -32,6 +37,7 @@ pub fn documentation(description: &Description, version: FmiVersion, time: Optio
             escape(variable.description),
         ])
     }));
+    let loops = loops(description);
     let choices = choices(description);
     let provenance = provenance(description, version, time);
     format!(
@@ -44,20 +50,45 @@ pub fn documentation(description: &Description, version: FmiVersion, time: Optio
 {STYLE}</style>
 </head>
 <body>
-<h1>{name}</h1>
+<h1><img src=\"../terminalsAndIcons/icon.svg\" alt=\"\"> {name}</h1>
 <p><strong>{summary}.</strong></p>
 {paragraphs}
-<h2>Variables</h2>
+{loops}<h2>Variables</h2>
 <table>
 <tr><th>Name</th><th>Kind</th><th>Unit</th><th>Start</th><th>Range</th><th>Description</th></tr>
 {variables}
 </table>
-{choices}<h2>Provenance</h2>
+{choices}<h2>Reference run</h2>
+<p><a href=\"../{DIRECTORY}/{INPUT}\">{INPUT}</a> holds inputs, one row per communication point,
+<a href=\"../{DIRECTORY}/{OUTPUT}\">{OUTPUT}</a> the outputs after the initialization and after each step, with start
+values everywhere. An importer that sets each row, steps, and reads the outputs gets the same digits.</p>
+<p><img src=\"{RUN_FIGURE}\" alt=\"Inputs and outputs of the reference run\"></p>
+<h2>Provenance</h2>
 {provenance}
 </body>
 </html>
 "
     )
+}
+
+/// The loops that the unit is part of, with their wires.
+fn loops(description: &Description) -> String {
+    let mut text = String::new();
+    for plug in Plug::all_of(description) {
+        let system = plug.system;
+        let (plant, controller) = (system.plant.description.name, system.controller.description.name);
+        let sensing = system.sensing.iter().map(|wire| (plant, controller, wire));
+        let wires = sensing.chain(system.actuation.iter().map(|wire| (controller, plant, wire)));
+        let rows = lines(wires.map(|(source, target, (output, input))| {
+            row([source.into(), code(output), target.into(), code(input)])
+        }));
+        text += &format!(
+            "<h2>Loop</h2>\n<p><img src=\"{}\" alt=\"{controller} and {plant} in a loop\"></p>\n\
+             <table>\n<tr><th>From</th><th>output</th><th>to</th><th>input</th></tr>\n{rows}\n</table>\n",
+            diagram_name(system.name)
+        );
+    }
+    text
 }
 
 /// The enumerations and what their items mean.

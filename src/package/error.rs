@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 use super::FmiVersion;
+use crate::unit::UnitError;
 
 /// Why packaging failed: the action and the path or value that it failed on.
 #[derive(Debug, Error)]
@@ -17,6 +18,14 @@ pub enum PackageError {
     Archive { path: PathBuf, source: zip::result::ZipError },
     #[error("cannot write the FMI {version} model description of {unit}")]
     ModelDescription { unit: &'static str, version: FmiVersion, source: quick_xml::SeError },
+    #[error("cannot write the manifest of related files of {unit}")]
+    Manifest { unit: &'static str, source: quick_xml::SeError },
+    #[error("cannot write the system structure of {system}")]
+    SystemStructure { system: &'static str, source: quick_xml::SeError },
+    #[error("system {system} needs {unit}, which is not in the list of units")]
+    UnknownUnit { system: &'static str, unit: &'static str },
+    #[error("cannot compute the reference output of {unit}")]
+    ReferenceRun { unit: &'static str, source: UnitError },
     #[error("unit {unit} has no icon: draw assets/{unit}.svg and list it in src/package/icon.rs")]
     NoIcon { unit: &'static str },
     #[error("cannot read the icon assets/{unit}.svg")]

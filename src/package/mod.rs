@@ -1,4 +1,5 @@
-//! From a unit's variable table to a functional mock-up unit: model description, documentation, icon, archive.
+//! From a unit's variable table to a functional mock-up unit: model description, documentation, icon, archive; and from
+//! the table of systems to system structure packages.
 //!
 //! Everything here is written from the tables that the shared library is built from, never by loading the library,
 //! so units for another platform can be packaged as well.
@@ -13,10 +14,17 @@ mod generation_time;
 mod icon;
 mod library;
 mod licenses;
+mod loop_diagram;
 mod model_description;
 mod platform;
+mod plug;
+mod reference_run;
+mod related_files;
+mod run_figure;
+mod system_structure;
 mod variable_text;
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -31,8 +39,11 @@ pub use icon::{icon_png, icon_svg};
 pub use library::Library;
 pub use model_description::model_description;
 pub use platform::Platform;
+pub use reference_run::{ReferenceRun, Table};
+pub use related_files::{DIRECTORY as RELATED_FILES, INPUT as REFERENCE_INPUT, OUTPUT as REFERENCE_OUTPUT};
 
 use crate::unit::UNITS;
+use crate::unit::system::SYSTEMS;
 
 /// A file that was written.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -42,7 +53,8 @@ pub struct WrittenFile {
     pub size: usize,
 }
 
-/// Writes `directory/fmi2/<Unit>.fmu` and `directory/fmi3/<Unit>.fmu` for all units, each with all `libraries`.
+/// Writes `directory/fmi2/<Unit>.fmu` and `directory/fmi3/<Unit>.fmu` for all units, each with all `libraries`, and
+/// `directory/<system>.ssp` for all systems.
 ///
 /// The same arguments give the same bytes. An archive appears complete or not at all.
 pub fn build(
@@ -51,6 +63,8 @@ pub fn build(
     time: GenerationTime,
 ) -> Result<Vec<WrittenFile>, PackageError> {
     let mut written = Vec::new();
+    // Packages by unit that go into the systems.
+    let mut for_systems = BTreeMap::new();
     for version in FmiVersion::ALL {
         let directory = directory.join(version.directory());
         fs::create_dir_all(&directory)
@@ -62,7 +76,18 @@ pub fn build(
                 .map_err(|source| PackageError::Archive { path: path.clone(), source })?;
             replace_file(&path, &bytes)?;
             written.push(WrittenFile { path, size: bytes.len() });
+            if version == system_structure::FMI_VERSION {
+                for_systems.insert(unit.description.name, bytes);
+            }
         }
+    }
+    for system in SYSTEMS {
+        let path = directory.join(system.name).with_extension("ssp");
+        let entries = system_structure::contents(system, time, &for_systems)?;
+        let bytes =
+            archive(&entries, time).map_err(|source| PackageError::Archive { path: path.clone(), source })?;
+        replace_file(&path, &bytes)?;
+        written.push(WrittenFile { path, size: bytes.len() });
     }
     Ok(written)
 }

@@ -35,6 +35,11 @@ impl FirstOrderHold {
         Self { decay, past: rate * past, present: rate * present }
     }
 
+    /// The same low-pass by forward Euler, for comparison: the levitated ball is lost with it.
+    pub fn low_pass_by_euler(rate: f64, duration: f64) -> Self {
+        Self { decay: 1.0 - rate * duration, past: rate * duration, present: 0.0 }
+    }
+
     /// x at the end of the sample.
     #[inline(always)]
     pub fn after(&self, state: f64, past_input: f64, present_input: f64) -> f64 {

@@ -4,6 +4,7 @@ mod ball_reference;
 mod ball_reference_filter;
 mod first_order_hold;
 mod noise;
+pub mod reference_filter;
 mod sensor;
 
 pub use ball_reference::BallReference;

@@ -26,11 +26,15 @@ pub static VOLT_SECOND_PER_METRE: UnitOfMeasure =
 pub static PER_SECOND: UnitOfMeasure = UnitOfMeasure { name: "1/s", exponents: [0, 0, -1, 0], display: None };
 pub static PER_SECOND_SQUARED: UnitOfMeasure =
     UnitOfMeasure { name: "1/s2", exponents: [0, 0, -2, 0], display: None };
+pub static PER_SECOND_CUBED: UnitOfMeasure =
+    UnitOfMeasure { name: "1/s3", exponents: [0, 0, -3, 0], display: None };
 pub static KILOGRAM: UnitOfMeasure =
     UnitOfMeasure { name: "kg", exponents: [1, 0, 0, 0], display: Some(("g", 1e3)) };
 pub static NEWTON: UnitOfMeasure =
     UnitOfMeasure { name: "N", exponents: [1, 1, -2, 0], display: Some(("mN", 1e3)) };
 pub static AMPERE: UnitOfMeasure = UnitOfMeasure { name: "A", exponents: [0, 0, 0, 1], display: None };
+pub static AMPERE_PER_VOLT: UnitOfMeasure =
+    UnitOfMeasure { name: "A/V", exponents: [-1, -2, 3, 2], display: None };
 pub static OHM: UnitOfMeasure = UnitOfMeasure { name: "Ohm", exponents: [1, 2, -3, -2], display: None };
 pub static NEWTON_SQUARE_METRE_PER_SQUARE_AMPERE: UnitOfMeasure =
     UnitOfMeasure { name: "N.m2/A2", exponents: [1, 3, -2, -2], display: None };

@@ -1,8 +1,8 @@
 //! Which plant and which controller belong together, and how they are wired.
 
 use super::{
-    LEVITATED_BALL_CONTROLLER, LEVITATED_BALL_PLANT, MAGNETIC_BEARING_CONTROLLER, MAGNETIC_BEARING_PLANT,
-    UnitType,
+    LEVITATED_BALL_CONTROLLER, LEVITATED_BALL_PLANT, MAGLEV_RIG_CONTROLLER, MAGLEV_RIG_PLANT,
+    MAGNETIC_BEARING_CONTROLLER, MAGNETIC_BEARING_PLANT, UnitType,
 };
 
 /// A plant with its controller. All wires carry reals.
@@ -45,8 +45,16 @@ pub static BALL: System = System {
     actuation: &[("voltage", "voltage")],
 };
 
+pub static RIG: System = System {
+    name: "rig",
+    plant: &MAGLEV_RIG_PLANT,
+    controller: &MAGLEV_RIG_CONTROLLER,
+    sensing: &[("sensor_voltage_measured", "sensor_voltage"), ("voltage_measured", "voltage_applied")],
+    actuation: &[("voltage", "voltage")],
+};
+
 /// All systems, in the order of their units.
-pub static SYSTEMS: &[&System] = &[&BEARING, &BALL];
+pub static SYSTEMS: &[&System] = &[&BEARING, &BALL, &RIG];
 
 impl System {
     /// The system called `name`.

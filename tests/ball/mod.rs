@@ -43,6 +43,8 @@ pub struct BallLoop {
     pub ticks: u32,
     /// Added to the voltage that acts [V].
     pub voltage_offset: f64,
+    /// Added to the reference [m].
+    pub reference_offset: f64,
     wires: Vec<(usize, usize)>,
     voltage: [usize; 2],
     wanted: usize,
@@ -71,6 +73,7 @@ impl BallLoop {
             sample_time: get(&controller, "sample_time"),
             ticks: 0,
             voltage_offset: 0.0,
+            reference_offset: 0.0,
             wires: wires.collect(),
             voltage: [reference(&controller, "voltage"), reference(&plant, "voltage")],
             wanted: reference(&controller, "reference"),
@@ -81,15 +84,31 @@ impl BallLoop {
 
     /// The controller ticks, then the plant moves on.
     pub fn step(&mut self) {
+        self.step_controller();
+        self.pass_voltage();
+        self.plant.advance(self.sample_time, &mut Silence).unwrap();
+        self.ticks += 1;
+    }
+
+    /// Both move on with what the other put out before.
+    pub fn step_both_at_once(&mut self) {
+        self.step_controller();
+        self.plant.advance(self.sample_time, &mut Silence).unwrap();
+        self.pass_voltage();
+        self.ticks += 1;
+    }
+
+    fn step_controller(&mut self) {
         for (from, to) in &self.wires {
             self.controller.values_mut()[*to] = self.plant.values()[*from];
         }
-        self.controller.values_mut()[self.wanted] = self.signal.at(self.time());
+        self.controller.values_mut()[self.wanted] = self.signal.at(self.time()) + self.reference_offset;
         self.controller.advance(self.sample_time, &mut Silence).unwrap();
+    }
+
+    fn pass_voltage(&mut self) {
         self.plant.values_mut()[self.voltage[1]] =
             self.controller.values()[self.voltage[0]] + self.voltage_offset;
-        self.plant.advance(self.sample_time, &mut Silence).unwrap();
-        self.ticks += 1;
     }
 
     pub fn time(&self) -> f64 {

@@ -7,7 +7,9 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 FMI_VERSIONS = [2, 3]
-PLANT, CONTROLLER = UNITS = ["MagneticBearingPlant", "MagneticBearingController"]
+PLANT, CONTROLLER = BEARING_UNITS = ["MagneticBearingPlant", "MagneticBearingController"]
+BALL_UNITS = ["LevitatedBallPlant", "LevitatedBallController"]
+UNITS = BEARING_UNITS + BALL_UNITS
 
 
 def dist() -> Path:

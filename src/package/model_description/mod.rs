@@ -6,7 +6,7 @@ mod fmi3;
 mod roles;
 mod terminals_and_icons;
 
-pub(super) use common::enumerations;
+pub(super) use common::{GENERATION_TOOL, enumerations, real};
 
 use quick_xml::se::Serializer;
 use serde::Serialize;
@@ -29,7 +29,7 @@ pub fn model_description(
 }
 
 /// An XML document with the root element `root`.
-fn document(root: &str, content: &impl Serialize) -> Result<String, quick_xml::SeError> {
+pub(super) fn document(root: &str, content: &impl Serialize) -> Result<String, quick_xml::SeError> {
     let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
     let mut serializer = Serializer::with_root(&mut text, Some(root))?;
     serializer.indent(' ', 2);

@@ -135,12 +135,12 @@ variable_table! {
     FILTER_2 = filter("observer.filter[2]", 25.0);
     FILTER_3 = filter("observer.filter[3]", 60.0);
     FILTER_4 = filter("observer.filter[4]", 150.0);
-    NEWTON_GAIN = Variable::tunable("observer.newton_gain", Kind::Real(&RATE), 120.0)
+    NEWTON_GAIN = Variable::tunable("observer.newton_gain", Kind::Real(&RATE), 160.0)
         .range(0.0, 1e6)
         .describe("Rate at which polynomial_newton and its adaptive variant correct the offset");
     ADAPTATION = Variable::parameter("observer.adaptation", Kind::Enumeration(&ADAPTATION_KIND), 1.0)
         .describe("What polynomial_newton_adaptive learns");
-    ADAPTATION_GAIN = Variable::tunable("observer.adaptation_gain", Kind::Real(&ADAPTATION_GAIN_QUANTITY), 3600.0)
+    ADAPTATION_GAIN = Variable::tunable("observer.adaptation_gain", Kind::Real(&ADAPTATION_GAIN_QUANTITY), 3000.0)
         .range(0.0, 1e9)
         .describe("Integral gain of polynomial_newton_adaptive; a quarter of the square of observer.newton_gain damps \
             critically");

@@ -1,0 +1,218 @@
+//! Time of one step of the rig's units through the C ABI, as an importer pays for it: set two inputs, `doStep`, get four
+//! outputs, on the signals of a PID loop with a millivolt of noise and a moving reference. Beside it the observers
+//! alone, which is what a tuning loop pays per sample.
+
+mod measure;
+
+use core::ffi::c_void;
+use std::hint::black_box;
+
+use maglev_fmu::fmi::fmi2::{
+    fmi2DoStep, fmi2EnterInitializationMode, fmi2ExitInitializationMode, fmi2FreeInstance, fmi2GetReal,
+    fmi2Reset, fmi2SetReal,
+};
+use maglev_fmu::fmi::{Callback, Instance, Interface, Logger};
+use maglev_fmu::observer::extended_state::{
+    ExtendedState, ExtendedStateModel, Injection, LinearInjection, NonlinearInjection, gains_from_bandwidth,
+};
+use maglev_fmu::observer::extended_state_exact::ExactPredictor;
+use maglev_fmu::unit::{MaglevRigController, MaglevRigPlant, Silence, Unit};
+use measure::{Candidate, medians, verdict};
+
+const T: f64 = 1e-3;
+const STEPS: usize = 10_000;
+const ROUNDS: usize = 51;
+
+fn reference(unit: &dyn Unit, name: &str) -> u32 {
+    unit.description().find(name).expect("a variable of the table").0 as u32
+}
+
+/// Inputs of the controller, sensor voltage and reference [V], and of the plant, voltage [V] and force [N].
+#[derive(Default)]
+struct Recording {
+    controller: Vec<[f64; 2]>,
+    plant: Vec<[f64; 2]>,
+}
+
+fn record() -> Recording {
+    let (mut plant, mut controller) = (MaglevRigPlant::new(), MaglevRigController::new());
+    let index = |unit: &dyn Unit, name: &str| reference(unit, name) as usize;
+    let noise = index(&plant, "sensor.noise");
+    plant.values_mut()[noise] = 1e-3;
+    plant.initialise(0.0).expect("start values");
+    controller.initialise(0.0).expect("start values");
+    let (measured, input) = (index(&plant, "sensor_voltage_measured"), index(&plant, "voltage"));
+    let (sensor, wanted) = (index(&controller, "sensor_voltage"), index(&controller, "reference"));
+    let output = index(&controller, "voltage");
+    let mut recording = Recording::default();
+    for k in 0..STEPS {
+        let reading = plant.values()[measured];
+        let target = -1.50868 + 0.15 * (core::f64::consts::PI * T * k as f64).sin();
+        controller.values_mut()[sensor] = reading;
+        controller.values_mut()[wanted] = target;
+        controller.advance(T, &mut Silence).expect("a step");
+        let voltage = controller.values()[output];
+        plant.values_mut()[input] = voltage;
+        plant.advance(T, &mut Silence).expect("a step");
+        recording.controller.push([reading, target]);
+        recording.plant.push([voltage, 0.0]);
+    }
+    recording
+}
+
+/// A unit behind the C boundary, stepped as an importer would.
+struct Component {
+    handle: *mut c_void,
+    inputs: [u32; 2],
+    outputs: [u32; 4],
+}
+
+impl Component {
+    fn controller(parameters: &[(&str, f64)]) -> Self {
+        let outputs = ["voltage", "estimate.position", "estimate.velocity", "estimate.extended"];
+        Self::new(MaglevRigController::new(), ["sensor_voltage", "reference"], outputs, parameters)
+    }
+
+    fn plant() -> Self {
+        let outputs = ["sensor_voltage_measured", "voltage_measured", "position", "velocity"];
+        Self::new(MaglevRigPlant::new(), ["voltage", "force"], outputs, &[])
+    }
+
+    fn new(
+        mut unit: impl Unit + 'static,
+        inputs: [&str; 2],
+        outputs: [&str; 4],
+        parameters: &[(&str, f64)],
+    ) -> Self {
+        for (name, value) in parameters {
+            let reference = reference(&unit, name) as usize;
+            unit.values_mut()[reference] = *value;
+        }
+        let inputs = inputs.map(|name| reference(&unit, name));
+        let outputs = outputs.map(|name| reference(&unit, name));
+        // Reset goes back to the unit as given here.
+        let instance = Instance::new(
+            Box::new(unit),
+            Interface::CoSimulation,
+            Logger::new(Callback::None, c"bench".into(), false),
+        );
+        let handle = Box::into_raw(Box::new(instance)).cast();
+        Self { handle, inputs, outputs }
+    }
+
+    /// Plays the recorded inputs from a fresh start.
+    fn play(&mut self, inputs: &[[f64; 2]]) {
+        // SAFETY: a live handle, one thread.
+        unsafe {
+            fmi2Reset(self.handle);
+            fmi2EnterInitializationMode(self.handle);
+            fmi2ExitInitializationMode(self.handle);
+        }
+        // Through opaque pointers, as if loaded: nothing is inlined into the loop.
+        let set: unsafe extern "C" fn(_, *const _, _, *const _) -> _ = black_box(fmi2SetReal);
+        let step: unsafe extern "C" fn(_, _, _, _) -> _ = black_box(fmi2DoStep);
+        let get: unsafe extern "C" fn(_, *const _, _, *mut _) -> _ = black_box(fmi2GetReal);
+        let mut outputs = [0.0; 4];
+        let mut failures = 0;
+        let mut time = 0.0;
+        for input in inputs {
+            // SAFETY: a live handle, one thread, arrays of the given length.
+            unsafe {
+                failures += set(self.handle, self.inputs.as_ptr(), 2, input.as_ptr());
+                failures += step(self.handle, time, T, 1);
+                failures += get(self.handle, self.outputs.as_ptr(), 4, outputs.as_mut_ptr());
+            }
+            time += T;
+            black_box(&outputs);
+        }
+        assert_eq!(failures, 0);
+    }
+}
+
+impl Drop for Component {
+    fn drop(&mut self) {
+        // SAFETY: made in `new`, freed once.
+        unsafe { fmi2FreeInstance(self.handle) }
+    }
+}
+
+/// One Runge-Kutta step per sample with the measurement a straight line, as a tuning loop makes it.
+fn observe(injection: impl Injection, inputs: &[[f64; 2]]) {
+    let model = ExtendedStateModel { injection: black_box(injection), input_gain: black_box(1.0) };
+    let mut z = ExtendedState::default();
+    for pair in inputs.windows(2) {
+        let (start, end) = (pair[0][0], pair[1][0]);
+        z = model.runge_kutta_step(z, [start, 0.5 * (start + end), end], 0.76, T);
+    }
+    black_box(z);
+}
+
+fn observe_exactly(inputs: &[[f64; 2]]) {
+    let predictor = black_box(ExactPredictor::new(gains_from_bandwidth(100.0), 1.0, T));
+    let z = inputs.iter().fold(ExtendedState::default(), |z, input| predictor.step(z, input[0], 0.76));
+    black_box(z);
+}
+
+fn main() {
+    let Recording { controller: readings, plant: voltages } = record();
+    let nonlinear = |exponents| NonlinearInjection::new(gains_from_bandwidth(100.0), exponents, [0.01; 3]);
+    let (kind, discretisation) = (("observer.kind", 2.0), "observer.discretisation");
+    let through_extended_state =
+        [("controller.kind", 2.0), ("observer.input_gain", -3705.0), ("observer.bandwidth", 300.0)];
+    let units = [
+        ("linear, exact, PID", Component::controller(&[]), &readings),
+        ("linear, exact, disturbance rejection", Component::controller(&through_extended_state), &readings),
+        ("linear, Runge-Kutta", Component::controller(&[(discretisation, 2.0)]), &readings),
+        ("nonlinear, Runge-Kutta", Component::controller(&[kind]), &readings),
+        (
+            "nonlinear, Runge-Kutta, exponents 0.9, 0.6, 0.3",
+            Component::controller(&[
+                kind,
+                ("observer.exponent[1]", 0.9),
+                ("observer.exponent[2]", 0.6),
+                ("observer.exponent[3]", 0.3),
+                ("observer.linear_zone[1]", 1e-4),
+                ("observer.linear_zone[2]", 1e-4),
+                ("observer.linear_zone[3]", 1e-4),
+            ]),
+            &readings,
+        ),
+        ("nonlinear, exact (frozen gains)", Component::controller(&[kind, (discretisation, 1.0)]), &readings),
+        ("plant", Component::plant(), &voltages),
+    ];
+    let mut candidates: Vec<Candidate> = units
+        .into_iter()
+        .map(|(name, mut component, inputs)| Candidate {
+            name,
+            operations: STEPS,
+            run: Box::new(move || component.play(inputs)),
+        })
+        .collect();
+    let inputs = &readings;
+    let alone = |name, run| Candidate { name, operations: STEPS, run };
+    candidates.extend([
+        alone("observer alone: linear, exact", Box::new(|| observe_exactly(inputs))),
+        alone(
+            "observer alone: linear, Runge-Kutta",
+            Box::new(|| observe(LinearInjection::from_bandwidth(100.0), inputs)),
+        ),
+        alone(
+            "observer alone: nonlinear, Runge-Kutta, printed exponents",
+            Box::new(|| observe(nonlinear([1.0, 0.5, 0.25]), inputs)),
+        ),
+        alone(
+            "observer alone: nonlinear, Runge-Kutta, exponents 0.9, 0.6, 0.3",
+            Box::new(|| observe(nonlinear([0.9, 0.6, 0.3]), inputs)),
+        ),
+    ]);
+    let medians = medians(&mut candidates, ROUNDS);
+    println!("Step through the C ABI (set two inputs, doStep, get four outputs), medians");
+    for (candidate, median) in candidates.iter().zip(&medians) {
+        verdict(candidate.name, *median, "ns", None, None);
+    }
+    println!("Targets");
+    verdict("linear, exact, PID", medians[0], "ns", Some(80.0), None);
+    verdict("linear, exact, disturbance rejection", medians[1], "ns", Some(80.0), None);
+    verdict("nonlinear, Runge-Kutta", medians[3], "ns", Some(300.0), None);
+    verdict("observer alone: linear, Runge-Kutta", medians[8], "ns", Some(50.0), None);
+}

@@ -1,0 +1,201 @@
+#!/usr/bin/env python3
+"""Runs the FMUs and systems through the importers and checkers there are, and writes docs/conformance.md.
+
+cargo run --release -- build
+python scripts/conformance.py --write
+"""
+
+from __future__ import annotations
+
+import argparse
+import faulthandler
+import multiprocessing
+import os
+import platform
+import sys
+import tempfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from zipfile import ZipFile
+
+from importers import ANY, CO_SIMULATION, MODEL_EXCHANGE, SCHEDULED_EXECUTION, Task, checkers, in_cpp, systems
+from importers import with_fmpy, with_fmuloader
+from lxml import etree
+
+REPOSITORY = Path(__file__).resolve().parent.parent
+PAGE = REPOSITORY / "docs" / "conformance.md"
+TIME_LIMIT = 120.0  # s
+
+UNIT_TASKS = [
+    task
+    for version in (2, 3)
+    for module in (checkers, with_fmpy, with_fmuloader, in_cpp)
+    for task in module.TASKS
+    if task.fmi_version == version
+]
+ELEMENTS = {"CoSimulation": CO_SIMULATION, "ModelExchange": MODEL_EXCHANGE, "ScheduledExecution": SCHEDULED_EXECUTION}
+
+HEAD = """\
+# Conformance
+
+What programs of others make of the FMUs and systems of this repository. Written by `scripts/conformance.py --write`;
+the Python tests run every cell again and fail if this page is not what they found.
+
+Each FMU carries a reference input and the output that belongs to it (`extra/org.fmi-standard.fmi-ls-ref`). A program
+that runs an FMU is given the one and has to return the other: *exact* means the same bits at every step, *to 1e-09*
+within that part of the largest magnitude of each variable, *to 1e-06* the same for states that the program's own
+integrator has solved for. *valid* and *read* are the words of checkers and readers. An empty cell: the unit does not
+offer that interface. *limit*: the program cannot do this with any FMU; its own words are below the table.
+"""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of a task."""
+
+    word: str
+    error: str | None = None
+
+    @property
+    def is_good(self) -> bool:
+        return self.error is None
+
+
+def is_installed(task: Task) -> bool:
+    try:
+        version(task.program)
+    except PackageNotFoundError:
+        return False
+    return True
+
+
+def interfaces(fmu: Path) -> set[str]:
+    """Interface types that the model description of an FMU declares."""
+    with ZipFile(fmu) as archive:
+        root = etree.fromstring(archive.read("modelDescription.xml"))
+    return {ANY} | {kind for element, kind in ELEMENTS.items() if root.find(element) is not None}
+
+
+def cells(dist: Path) -> Iterator[tuple[Task, Path]]:
+    """Every task with every package that it applies to, of the programs that are installed."""
+    for task in UNIT_TASKS:
+        for fmu in sorted(dist.glob(f"fmi{task.fmi_version}/*.fmu")):
+            if is_installed(task) and task.interface in interfaces(fmu):
+                yield task, fmu
+    for task in systems.TASKS:
+        for package in sorted(dist.glob("*.ssp")):
+            if is_installed(task):
+                yield task, package
+
+
+def run(task: Task, package: Path) -> Outcome:
+    """Carries out a task in a process of its own, since a program in C++ may end it."""
+    context = multiprocessing.get_context("fork" if "fork" in multiprocessing.get_all_start_methods() else "spawn")
+    receiver, sender = context.Pipe(duplex=False)
+    process = context.Process(target=carry_out, args=(task, package, sender))
+    process.start()
+    sender.close()
+    try:
+        found = receiver.recv() if receiver.poll(TIME_LIMIT) else (None, f"no answer within {TIME_LIMIT:g} s")
+    except EOFError:
+        process.join()
+        found = None, f"the process ended with {process.exitcode}"
+    process.kill()
+    process.join()
+    word, error = found
+    if task.limit is None or not task.limit.applies(package):
+        return Outcome(word or "error", error)
+    if error is None or task.limit.error not in error:
+        return Outcome("error", f"expected the error {task.limit.error!r}, found {error or word!r}")
+    return Outcome("limit")
+
+
+def carry_out(task: Task, package: Path, sender: object) -> None:
+    """In the other process: reports a word or an error, and leaves what programs print out of the way."""
+    faulthandler.disable()
+    with tempfile.TemporaryFile() as log:
+        for stream in (1, 2):
+            os.dup2(log.fileno(), stream)
+        try:
+            sender.send((task.run(package), None))
+        except BaseException as error:  # noqa: BLE001 - whatever it is, it is an answer
+            sender.send((None, f"{type(error).__name__}: {error}"))
+    # No destructors: those of some programs end the process with an error.
+    os._exit(0)
+
+
+def label(task: Task) -> str:
+    """First cells of a task's row."""
+    what = task.what if task.interface == ANY else f"{task.what}, {task.interface}"
+    standard = "" if task.fmi_version is None else f" FMI {task.fmi_version} |"
+    return f"|{standard} {task.program} {version(task.program)} | {what} |"
+
+
+def table(tasks: list[Task], outcomes: dict[tuple[Task, Path], Outcome], first: str) -> list[str]:
+    """Lines of a table with a row per task and a column per package name."""
+    tasks = [task for task in tasks if any(known == task for known, _ in outcomes)]
+    names = sorted({package.stem for task, package in outcomes if task in tasks})
+    lines = [f"|{first} {' | '.join(names)} |", "| --- " * (first.count("|") + len(names)) + "|"]
+    for task in tasks:
+        words = {package.stem: outcome.word for (known, package), outcome in outcomes.items() if known == task}
+        lines.append(f"{label(task)} {' | '.join(words.get(name, '') for name in names)} |")
+    return lines
+
+
+def page(outcomes: dict[tuple[Task, Path], Outcome]) -> str:
+    """The whole of docs/conformance.md."""
+    limits = {
+        f"- {task.program} {version(task.program)}, {task.limit.why}: `{task.limit.error}`"
+        for (task, _), outcome in outcomes.items()
+        if task.limit is not None and outcome.word == "limit"
+    }
+    lines = [
+        HEAD,
+        "## FMUs",
+        "",
+        *table(UNIT_TASKS, outcomes, " Standard | Program | Task |"),
+        "",
+        *sorted(limits),
+        "",
+        "## Systems (SSP 1.0)",
+        "",
+        "Programs are compared with a plain loop of the same FMUs in the same order of exchange: both units step, then",
+        "values are passed on.",
+        "",
+        *table(systems.TASKS, outcomes, " Program | Task |"),
+        "",
+        NOTES.format(enumerations=", ".join(f"{name} (`{error}`)" for name, error in systems.ENUMERATION_ERRORS.items())),
+    ]
+    return "\n".join(lines)
+
+
+NOTES = """\
+- FMPy does not apply the parameter sets that a package binds unless it is handed them, and starts all wires at 0.
+- The packages' parameter sets have no enumerations, since none of the programs takes them: {enumerations}.
+- OMSimulator's Python package downloads its program from a server of its own when it is installed, which the tests
+  cannot rely on; it is not among the programs.
+"""
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--dist", type=Path, default=REPOSITORY / "dist", help="directory with the packages")
+    parser.add_argument("--write", action="store_true", help="write docs/conformance.md")
+    options = parser.parse_args()
+    outcomes = {}
+    for task, package in cells(options.dist.resolve()):
+        outcome = outcomes[task, package] = run(task, package)
+        print(f"{label(task)} {package.stem}: {outcome.error or outcome.word}", flush=True)
+    if not outcomes:
+        sys.exit(f"no packages in {options.dist}: build them first, cargo run --release -- build")
+    if not all(outcome.is_good for outcome in outcomes.values()):
+        sys.exit("not everything went well")
+    if options.write:
+        PAGE.write_text(page(outcomes), encoding="utf-8")
+        print(f"written: {PAGE} on {platform.platform()}")
+
+
+if __name__ == "__main__":
+    main()

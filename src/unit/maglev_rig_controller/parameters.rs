@@ -1,0 +1,140 @@
+//! What the values of parameters mean to the observers and the laws.
+
+use super::table::*;
+use crate::controller::digital_pid::{Derivative, PidSettings};
+use crate::controller::disturbance_rejection::DisturbanceRejection;
+use crate::observer::extended_state::{
+    ExtendedState, LinearInjection, NonlinearInjection, gains_from_bandwidth,
+};
+use crate::observer::sampled_extended_state::{Discretisation, ExtendedStateSettings, Form, InjectionChoice};
+use crate::plant::maglev_rig::PositionSensor;
+use serde::{Deserialize, Serialize};
+
+pub(super) fn observer_settings(values: &[f64; COUNT]) -> ExtendedStateSettings {
+    let gains = if values[OBSERVER_TUNING] == GAINS {
+        [values[OBSERVER_GAIN_1], values[OBSERVER_GAIN_2], values[OBSERVER_GAIN_3]]
+    } else {
+        gains_from_bandwidth(values[OBSERVER_BANDWIDTH])
+    };
+    let is_nonlinear = values[OBSERVER] == NONLINEAR;
+    let injection = if is_nonlinear {
+        InjectionChoice::Nonlinear(NonlinearInjection::new(
+            gains,
+            [values[EXPONENT_1], values[EXPONENT_2], values[EXPONENT_3]],
+            [values[LINEAR_ZONE_1], values[LINEAR_ZONE_2], values[LINEAR_ZONE_3]],
+        ))
+    } else {
+        InjectionChoice::Linear(LinearInjection { gains })
+    };
+    let runge_kutta = Discretisation::RungeKutta(values[OBSERVER_SUBSTEPS] as u32);
+    let discretisation = match values[OBSERVER_DISCRETISATION] {
+        EXACT => Discretisation::Exact,
+        RUNGE_KUTTA => runge_kutta,
+        EULER => Discretisation::Euler,
+        _ if is_nonlinear => runge_kutta,
+        _ => Discretisation::Exact,
+    };
+    let form = if values[OBSERVER_FORM] == CURRENT { Form::Current } else { Form::Predictor };
+    let (input_gain, sample_time) = (values[OBSERVER_INPUT_GAIN], values[SAMPLE_TIME]);
+    ExtendedStateSettings { injection, input_gain, discretisation, form, sample_time }
+}
+
+/// How a sensor voltage \[V\] and the observer's measurement relate.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) enum Measurement {
+    Volts(PositionSensor),
+    Metres(PositionSensor),
+}
+
+impl Measurement {
+    pub(super) fn from_values(values: &[f64; COUNT]) -> Self {
+        let sensor = PositionSensor { gain: values[SENSOR_GAIN], offset: values[SENSOR_OFFSET] };
+        if values[OBSERVER_MEASUREMENT] == METRES { Self::Metres(sensor) } else { Self::Volts(sensor) }
+    }
+
+    /// What the observer measures at a sensor voltage.
+    #[inline]
+    pub(super) fn of(&self, sensor_voltage: f64) -> f64 {
+        match self {
+            Self::Volts(_) => sensor_voltage,
+            Self::Metres(sensor) => sensor.position(sensor_voltage),
+        }
+    }
+
+    /// The observer's estimate in sensor volts.
+    #[inline]
+    pub(super) fn in_volts(&self, z: ExtendedState) -> ExtendedState {
+        match self {
+            Self::Volts(_) => z,
+            Self::Metres(sensor) => ExtendedState {
+                position: sensor.voltage(z.position),
+                velocity: sensor.gain * z.velocity,
+                extended: sensor.gain * z.extended,
+            },
+        }
+    }
+
+    /// The observer's estimate in metres.
+    #[inline]
+    pub(super) fn in_metres(&self, z: ExtendedState) -> ExtendedState {
+        match self {
+            Self::Metres(_) => z,
+            Self::Volts(sensor) => ExtendedState {
+                position: sensor.position(z.position),
+                velocity: z.velocity / sensor.gain,
+                extended: z.extended / sensor.gain,
+            },
+        }
+    }
+
+    /// The observer's input gain in sensor volts \[1/s2\].
+    pub(super) fn input_gain_in_volts(&self, input_gain: f64) -> f64 {
+        match self {
+            Self::Volts(_) => input_gain,
+            Self::Metres(sensor) => sensor.gain * input_gain,
+        }
+    }
+}
+
+/// z at the first tick, for what the observer measures then.
+pub(super) fn initial_estimate(values: &[f64; COUNT], measurement: f64) -> ExtendedState {
+    match values[OBSERVER_INITIAL] {
+        ZERO => ExtendedState::default(),
+        STEADY => ExtendedState {
+            position: measurement,
+            velocity: 0.0,
+            extended: -values[OBSERVER_INPUT_GAIN] * values[CONTROLLER_OPERATING_VOLTAGE],
+        },
+        _ => ExtendedState { position: measurement, ..ExtendedState::default() },
+    }
+}
+
+/// The law in use.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) enum Law {
+    Pid(PidSettings),
+    DisturbanceRejection(DisturbanceRejection),
+}
+
+pub(super) fn law(values: &[f64; COUNT]) -> Law {
+    if values[CONTROLLER_KIND_CHOICE] == DISTURBANCE_REJECTION {
+        return Law::DisturbanceRejection(DisturbanceRejection {
+            bandwidth: values[CONTROLLER_BANDWIDTH],
+            input_gain: values[CONTROLLER_INPUT_GAIN],
+        });
+    }
+    let on_measurement = values[CONTROLLER_DERIVATIVE] == OF_MEASUREMENT;
+    Law::Pid(PidSettings {
+        proportional_gain: values[KP],
+        integral_gain: values[KI],
+        derivative_gain: values[KD],
+        derivative: if on_measurement { Derivative::Measurement } else { Derivative::Error },
+        operating_voltage: values[CONTROLLER_OPERATING_VOLTAGE],
+        sample_time: values[SAMPLE_TIME],
+        limits: limits(values),
+    })
+}
+
+pub(super) fn limits(values: &[f64; COUNT]) -> (f64, f64) {
+    (values[VOLTAGE_MIN], values[VOLTAGE_MAX])
+}

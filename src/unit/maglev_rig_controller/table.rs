@@ -1,0 +1,290 @@
+//! Variables and description of the controller of the maglev rig.
+
+use crate::unit::Description;
+use crate::unit::maglev_rig::{
+    BALL_ACCELERATION, BALL_DISTANCE, BALL_VELOCITY, BANDWIDTH, DRIVER_VOLTAGE, FIRST_OBSERVER_GAIN,
+    INPUT_GAIN, OBSERVED_ACCELERATION, OBSERVED_INPUT_GAIN, OBSERVED_POSITION, OBSERVED_VELOCITY,
+    OPERATING_SENSOR_VOLTAGE, OPERATING_VOLTAGE, SECOND_OBSERVER_GAIN,
+    SENSOR_VOLTAGE as SENSOR_VOLTAGE_QUANTITY, THIRD_OBSERVER_GAIN, sensor_gain, sensor_offset, voltage_max,
+    voltage_min,
+};
+use crate::unit::quantity::{DURATION, Enumeration, RATE, RATIO, TIME as TIME_QUANTITY};
+use crate::unit::variable::{Kind, Variability, Variable, variable_table};
+
+static OBSERVER_KIND: Enumeration = Enumeration {
+    name: "RigObserver",
+    description: "Extended state observer",
+    items: &[
+        ("linear", "LESO, the error is fed in with constant gains, (12)"),
+        ("nonlinear", "NESO, the error is fed in through Han's function fal, (11)"),
+    ],
+};
+/// Number of the item `nonlinear`.
+pub(super) const NONLINEAR: f64 = 2.0;
+
+static TUNING: Enumeration = Enumeration {
+    name: "RigObserverTuning",
+    description: "Where the observer's gains come from",
+    items: &[
+        ("bandwidth", "3 w, 3 w^2, w^3 with w = observer.bandwidth, (13)"),
+        ("gains", "The parameters observer.gain"),
+    ],
+};
+/// Number of the item `gains`.
+pub(super) const GAINS: f64 = 2.0;
+
+static DISCRETISATION: Enumeration = Enumeration {
+    name: "RigObserverDiscretisation",
+    description: "How the observer's differential equation is solved over a sample",
+    items: &[
+        ("exact", "Closed form for held signals; of nonlinear with its gains frozen over the sample"),
+        ("runge_kutta", "Classical Runge-Kutta, observer.substeps times per sample"),
+        ("euler", "Forward Euler; nonlinear is unstable by it at 1 ms with the printed parameters"),
+        ("automatic", "exact for linear, runge_kutta for nonlinear"),
+    ],
+};
+/// Numbers of the items.
+pub(super) const EXACT: f64 = 1.0;
+pub(super) const RUNGE_KUTTA: f64 = 2.0;
+pub(super) const EULER: f64 = 3.0;
+const AUTOMATIC: f64 = 4.0;
+
+static FORM: Enumeration = Enumeration {
+    name: "RigObserverForm",
+    description: "Which samples an estimate uses",
+    items: &[
+        ("predictor", "Those before the tick; the measurement is held over a sample"),
+        (
+            "current",
+            "That of the tick, too: exact and euler correct a prediction with it, runge_kutta takes the measurement \
+             for a straight line between samples",
+        ),
+    ],
+};
+/// Number of the item `current`.
+pub(super) const CURRENT: f64 = 2.0;
+
+static MEASUREMENT: Enumeration = Enumeration {
+    name: "RigObserverMeasurement",
+    description: "What the observer takes for its measurement",
+    items: &[
+        ("volts", "The sensor voltage"),
+        ("metres", "The distance that sensor_gain and sensor_offset make of it"),
+    ],
+};
+/// Number of the item `metres`.
+pub(super) const METRES: f64 = 2.0;
+
+static INITIAL: Enumeration = Enumeration {
+    name: "RigObserverStart",
+    description: "Estimate at the first tick",
+    items: &[
+        ("matched", "Position as measured, all else zero"),
+        ("zero", "Zero, as the paper assumes: its Table 5 is the transient that follows"),
+        ("steady", "At rest as measured, held by controller.operating_voltage: no transient"),
+    ],
+};
+/// Numbers of the items.
+pub(super) const ZERO: f64 = 2.0;
+pub(super) const STEADY: f64 = 3.0;
+
+static VOLTAGE_SOURCE: Enumeration = Enumeration {
+    name: "VoltageSource",
+    description: "Which voltage the observer believes acted over the last sample",
+    items: &[
+        ("command", "The voltage this unit put out"),
+        ("applied", "The input voltage_applied, right in every exchange order"),
+    ],
+};
+/// Number of the item `applied`.
+pub(super) const APPLIED: f64 = 2.0;
+
+static CONTROLLER_KIND: Enumeration = Enumeration {
+    name: "RigController",
+    description: "Control law",
+    items: &[
+        ("pid", "Digital PID of the sensor voltage with anti-windup"),
+        (
+            "disturbance_rejection",
+            "Through the extended state: what is unknown of the acceleration is cancelled",
+        ),
+    ],
+};
+/// Number of the item `disturbance_rejection`.
+pub(super) const DISTURBANCE_REJECTION: f64 = 2.0;
+
+static DERIVATIVE: Enumeration = Enumeration {
+    name: "RigDerivative",
+    description: "What the derivative of the PID is taken of",
+    items: &[
+        ("error", "Of the error, as reconstructed: a step of the reference kicks the voltage"),
+        ("measurement", "Of the sensor voltage alone"),
+    ],
+};
+/// Number of the item `measurement`.
+pub(super) const OF_MEASUREMENT: f64 = 2.0;
+
+variable_table! {
+    TIME = Variable::time();
+    SENSOR_VOLTAGE = Variable::input("sensor_voltage", &SENSOR_VOLTAGE_QUANTITY)
+        .start(OPERATING_SENSOR_VOLTAGE)
+        .range(-1e6, 1e6)
+        .describe("y, measured voltage of the position sensor; it grows as the ball falls");
+    REFERENCE = Variable::input("reference", &SENSOR_VOLTAGE_QUANTITY)
+        .start(OPERATING_SENSOR_VOLTAGE)
+        .range(-1e6, 1e6)
+        .describe("r, wanted sensor voltage; -1.50868 V is 9 mm");
+    VOLTAGE_APPLIED = Variable::input("voltage_applied", &DRIVER_VOLTAGE)
+        .start(OPERATING_VOLTAGE)
+        .range(-1e6, 1e6)
+        .describe("Voltage that acted on the plant over the last sample, used with observer.voltage_source = applied");
+    VOLTAGE_OUTPUT = Variable::held_output("voltage", Kind::Real(&DRIVER_VOLTAGE))
+        .initially_from(&["controller.operating_voltage", "controller.voltage_min", "controller.voltage_max"])
+        .describe("u, held between ticks; the operating voltage before the first");
+    ESTIMATE_POSITION = Variable::held_output("estimate.position", Kind::Real(&OBSERVED_POSITION))
+        .initially_from(&["sensor_voltage", "observer.initial", "observer.measurement"])
+        .describe("z1 at the last tick, in V or m as observer.measurement selects");
+    ESTIMATE_VELOCITY = Variable::held_output("estimate.velocity", Kind::Real(&OBSERVED_VELOCITY))
+        .initially_from(&["observer.initial"])
+        .describe("z2 at the last tick, in V/s or m/s as observer.measurement selects");
+    ESTIMATE_EXTENDED = Variable::held_output("estimate.extended", Kind::Real(&OBSERVED_ACCELERATION))
+        .initially_from(&["observer.initial", "observer.input_gain", "controller.operating_voltage"])
+        .describe("z3 at the last tick, what is known of the acceleration beyond b u, in V/s2 or m/s2 as \
+            observer.measurement selects");
+    OBSERVER_RESIDUAL = Variable::held_output("observer.residual", Kind::Real(&OBSERVED_POSITION))
+        .describe("y less what the observer expected of it at the last tick, in V or m as observer.measurement selects");
+    OBSERVER_RESTARTS = Variable::held_output("observer.restarts", Kind::Integer)
+        .describe("How often the observer diverged and started anew from the measurement");
+    SI_POSITION = Variable::local("estimate.si.position", Kind::Real(&BALL_DISTANCE), Variability::Discrete)
+        .describe("z1 as a distance, whatever observer.measurement");
+    SI_VELOCITY = Variable::local("estimate.si.velocity", Kind::Real(&BALL_VELOCITY), Variability::Discrete)
+        .describe("z2 as a velocity, whatever observer.measurement");
+    SI_EXTENDED = Variable::local("estimate.si.extended", Kind::Real(&BALL_ACCELERATION), Variability::Discrete)
+        .describe("z3 as an acceleration, whatever observer.measurement");
+    FILTERED_REFERENCE =
+        Variable::local("controller.reference", Kind::Real(&SENSOR_VOLTAGE_QUANTITY), Variability::Discrete)
+        .describe("Reference behind the filter at the last tick");
+    TICK_TIME = Variable::local("tick_time", Kind::Real(&TIME_QUANTITY), Variability::Discrete)
+        .describe("Time of the last tick, a multiple of sample_time; the start time before the first");
+    SAMPLE_TIME = Variable::parameter("sample_time", Kind::Real(&DURATION), 1e-3)
+        .range(1e-6, 1.0)
+        .describe("T, the unit ticks at all multiples of it, whatever the communication step size");
+    OBSERVER = Variable::parameter("observer.kind", Kind::Enumeration(&OBSERVER_KIND), 1.0)
+        .describe("Extended state observer");
+    OBSERVER_TUNING = Variable::tunable("observer.tuning", Kind::Enumeration(&TUNING), 1.0)
+        .describe("Where the observer's gains come from, of either kind");
+    OBSERVER_BANDWIDTH = Variable::tunable("observer.bandwidth", Kind::Real(&BANDWIDTH), 100.0)
+        .range(1e-3, 1e5)
+        .describe("w_o, minus the triple pole of the linear observer; printed in Table 3. Through the extended state \
+            300 is a good choice");
+    OBSERVER_GAIN_1 = Variable::tunable("observer.gain[1]", Kind::Real(&FIRST_OBSERVER_GAIN), 300.0)
+        .range(0.0, 1e6)
+        .describe("L1, printed in Tables 3 and 4");
+    OBSERVER_GAIN_2 = Variable::tunable("observer.gain[2]", Kind::Real(&SECOND_OBSERVER_GAIN), 3e4)
+        .range(0.0, 1e12)
+        .describe("L2, printed in Tables 3 and 4");
+    OBSERVER_GAIN_3 = Variable::tunable("observer.gain[3]", Kind::Real(&THIRD_OBSERVER_GAIN), 1e6)
+        .range(0.0, 1e18)
+        .describe("L3, printed in Tables 3 and 4");
+    OBSERVER_INPUT_GAIN = Variable::tunable("observer.input_gain", Kind::Real(&OBSERVED_INPUT_GAIN), 1.0)
+        .range(-1e9, 1e9)
+        .describe("b, what the observer takes for the effect of the voltage on the acceleration. Printed 1 (Tables 3, \
+            4) has the wrong sign: enough to watch; to control set it to controller.input_gain");
+    EXPONENT_1 = Variable::tunable("observer.exponent[1]", Kind::Real(&RATIO), 1.0)
+        .range(0.01, 2.0)
+        .describe("alpha1 of nonlinear, printed in Table 4; 1 is linear");
+    EXPONENT_2 = Variable::tunable("observer.exponent[2]", Kind::Real(&RATIO), 0.5)
+        .range(0.01, 2.0)
+        .describe("alpha2 of nonlinear, printed in Table 4");
+    EXPONENT_3 = Variable::tunable("observer.exponent[3]", Kind::Real(&RATIO), 0.25)
+        .range(0.01, 2.0)
+        .describe("alpha3 of nonlinear, printed in Table 4");
+    LINEAR_ZONE_1 = Variable::tunable("observer.linear_zone[1]", Kind::Real(&OBSERVED_POSITION), 0.01)
+        .range(1e-9, 1e3)
+        .describe("delta1 of nonlinear, error up to which it is linear, printed in Table 4 without a unit");
+    LINEAR_ZONE_2 = Variable::tunable("observer.linear_zone[2]", Kind::Real(&OBSERVED_POSITION), 0.01)
+        .range(1e-9, 1e3)
+        .describe("delta2 of nonlinear");
+    LINEAR_ZONE_3 = Variable::tunable("observer.linear_zone[3]", Kind::Real(&OBSERVED_POSITION), 0.01)
+        .range(1e-9, 1e3)
+        .describe("delta3 of nonlinear");
+    OBSERVER_DISCRETISATION =
+        Variable::parameter("observer.discretisation", Kind::Enumeration(&DISCRETISATION), AUTOMATIC)
+        .describe("How the observer's differential equation is solved over a sample");
+    OBSERVER_FORM = Variable::parameter("observer.form", Kind::Enumeration(&FORM), 1.0)
+        .describe("Which samples an estimate uses");
+    OBSERVER_SUBSTEPS = Variable::parameter("observer.substeps", Kind::Integer, 1.0)
+        .range(1.0, 1000.0)
+        .describe("Steps of runge_kutta per sample");
+    OBSERVER_MEASUREMENT = Variable::parameter("observer.measurement", Kind::Enumeration(&MEASUREMENT), 1.0)
+        .describe("What the observer takes for its measurement");
+    OBSERVER_INITIAL = Variable::parameter("observer.initial", Kind::Enumeration(&INITIAL), STEADY)
+        .describe("Estimate at the first tick");
+    OBSERVER_VOLTAGE_SOURCE =
+        Variable::parameter("observer.voltage_source", Kind::Enumeration(&VOLTAGE_SOURCE), 1.0)
+        .describe("Which voltage the observer believes acted over the last sample");
+    CONTROLLER_KIND_CHOICE = Variable::tunable("controller.kind", Kind::Enumeration(&CONTROLLER_KIND), 1.0)
+        .describe("Control law");
+    KP = Variable::tunable("controller.kp", Kind::Real(&RATIO), 4.2)
+        .range(-1e6, 1e6)
+        .describe("Kp of pid, on y - r in sensor volts, printed in Table 2");
+    KI = Variable::tunable("controller.ki", Kind::Real(&RATE), 2.2)
+        .range(-1e6, 1e6)
+        .describe("Ki of pid, printed in Table 2");
+    KD = Variable::tunable("controller.kd", Kind::Real(&DURATION), 0.02)
+        .range(-1e3, 1e3)
+        .describe("Kd of pid, printed in Table 2");
+    CONTROLLER_DERIVATIVE = Variable::tunable("controller.derivative", Kind::Enumeration(&DERIVATIVE), 1.0)
+        .describe("What the derivative of pid is taken of");
+    CONTROLLER_OPERATING_VOLTAGE =
+        Variable::tunable("controller.operating_voltage", Kind::Real(&DRIVER_VOLTAGE), OPERATING_VOLTAGE)
+        .range(-100.0, 100.0)
+        .describe("u0, voltage of pid without an error; the start value holds the ball at 9 mm");
+    CONTROLLER_BANDWIDTH = Variable::tunable("controller.bandwidth", Kind::Real(&BANDWIDTH), 60.0)
+        .range(0.0, 1e5)
+        .describe("w_c of disturbance_rejection, minus the double pole of the loop; a fifth of observer.bandwidth");
+    CONTROLLER_INPUT_GAIN = Variable::tunable("controller.input_gain", Kind::Real(&INPUT_GAIN), -3705.0)
+        .range(-1e9, 1e9)
+        .describe("b0 of disturbance_rejection, acceleration in sensor volts per driver voltage, not 0; a wrong sign \
+            loses the ball");
+    REFERENCE_FILTER = Variable::tunable("controller.reference_filter", Kind::Real(&BANDWIDTH), 0.0)
+        .range(0.0, 1e5)
+        .describe("w of the filter of the reference, two poles at -w, whose derivatives disturbance_rejection feeds \
+            forward; 0 for none");
+    VOLTAGE_MIN = voltage_min("controller.voltage_min");
+    VOLTAGE_MAX = voltage_max("controller.voltage_max");
+    SENSOR_GAIN = sensor_gain();
+    SENSOR_OFFSET = sensor_offset();
+}
+
+pub static DESCRIPTION: Description = Description {
+    name: "MaglevRigController",
+    summary: "Extended state observers, PID and disturbance rejection for the maglev rig Feedback 33-942S",
+    documentation: &[
+        "Observers and control of a ball below a coil, from the voltage of its position sensor: A. J. Humaidi et al., \
+         Experimental Design and Verification of Extended State Observers for Magnetic Levitation System Based on PSO, \
+         Open Electr. Electron. Eng. J. 12, 110-120, 2018.",
+        "A tick at each multiple of sample_time reads the inputs, runs the observer, then the law, and holds the \
+         outputs until the next tick. A step over [t, t + h) runs the ticks in it with the inputs set before. With \
+         h = sample_time the master should step the controller first and the plant second. A master that steps both \
+         at once delays the voltage by one step: choose observer.voltage_source = applied and wire voltage_applied to \
+         the plant's voltage_measured.",
+        "Printed in the paper: the gains of the PID and of the observers, exponents and linear zones, the input gain 1, \
+         zero initial estimates. Reconstructed, as the equations are pictures: the form of all of them; that the PID's \
+         position is in sensor volts and its error y - r (in metres, or with r - y, these gains do not stabilise the \
+         rig); its bias u0, T = 1 ms, the anti-windup by conditional integration and the limits.",
+        "The paper's Table 5 (LESO 2.98e-4, NESO 3.36e-4) is the transient from zero estimates: it is met within 1 % \
+         with observer.measurement = metres, observer.initial = zero, runge_kutta, form = current and a start at \
+         8.5 mm. With matched or steady estimates NESO is the better one for a moving ball without noise; noise of a \
+         millivolt reverses that. By forward Euler at 1 ms NESO runs in a limit cycle.",
+        "The law disturbance_rejection is not in the paper. It works in sensor volts whatever observer.measurement, and \
+         its observer must assume the same input gain: set observer.input_gain to controller.input_gain (in metres: \
+         divided by sensor_gain) and observer.bandwidth to some five times controller.bandwidth, say 300. The paper's \
+         input gain 1 has the wrong sign and loses the ball. It needs no operating voltage.",
+        "An observer that diverges, as one with too large gains by Euler does, starts anew from the measurement and \
+         counts that in observer.restarts; the outputs are finite and the voltage is within its limits, always.",
+    ],
+    variables: &VARIABLES,
+    step_size: 1e-3,
+    stop_time: 10.0,
+};

@@ -1,0 +1,77 @@
+//! Packaged units answer the reference input that travels with them with the reference output, to the last bit.
+#![cfg(feature = "tools")]
+
+#[allow(dead_code, reason = "each test uses a part")]
+mod package_xml;
+#[allow(dead_code, reason = "each test uses a part")]
+#[path = "fmi/packaged/mod.rs"]
+mod packaged;
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use maglev_fmu::host::{Instance, Logging};
+use maglev_fmu::package::{FmiVersion, REFERENCE_INPUT, REFERENCE_OUTPUT, RELATED_FILES};
+use maglev_fmu::unit::UNITS;
+use package_xml::Element;
+
+/// Times and values of a table.
+struct Table {
+    names: Vec<String>,
+    rows: Vec<(f64, Vec<f64>)>,
+}
+
+fn read(path: &Path) -> Table {
+    let mut reader = csv::Reader::from_path(path).unwrap();
+    let names: Vec<String> = reader.headers().unwrap().iter().map(str::to_owned).collect();
+    assert_eq!(names[0], "time");
+    let rows = reader.records().map(|record| {
+        let numbers: Vec<f64> = record.unwrap().iter().map(|text| text.parse().unwrap()).collect();
+        (numbers[0], numbers[1..].to_vec())
+    });
+    Table { rows: rows.collect(), names: names[1..].to_vec() }
+}
+
+fn bits(unit: &Instance, names: &[String]) -> Vec<u64> {
+    names.iter().map(|name| unit.get_by_name(name).unwrap().to_bits()).collect()
+}
+
+#[test]
+fn packages_give_the_reference_output() {
+    for version in FmiVersion::ALL {
+        for unit in UNITS {
+            let name = unit.description.name;
+            let fmu = packaged::open(version, name);
+            let directory = fmu.directory().join(RELATED_FILES);
+            let (inputs, outputs) =
+                (read(&directory.join(REFERENCE_INPUT)), read(&directory.join(REFERENCE_OUTPUT)));
+            assert_eq!(outputs.rows.len(), inputs.rows.len() + 1);
+            let mut instance = fmu.instantiate(name, Logging::On).unwrap();
+            instance.initialise(0.0, None).unwrap();
+            for (step, (time, expected)) in outputs.rows.iter().enumerate() {
+                let expected: Vec<u64> = expected.iter().map(|value| value.to_bits()).collect();
+                assert!(bits(&instance, &outputs.names) == expected, "{name}, FMI {version}, at {time} s");
+                if let Some((begin, values)) = inputs.rows.get(step) {
+                    for (input, value) in inputs.names.iter().zip(values) {
+                        instance.set_by_name(input, *value).unwrap();
+                    }
+                    instance.step(*begin, unit.description.step_size).unwrap();
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_manifest_names_files_of_the_package() {
+    let fmu = packaged::open(FmiVersion::Two, UNITS[0].description.name);
+    let directory = fmu.directory().join(RELATED_FILES);
+    let manifest = Element::parse(&std::fs::read_to_string(directory.join("fmi-ls-manifest.xml")).unwrap());
+    assert_eq!(manifest.attribute("fmi-ls:fmi-ls-name"), Some("org.fmi-standard.fmi-ls-ref"));
+    let related: BTreeSet<&str> =
+        manifest.children.iter().map(|file| file.attribute("source").unwrap()).collect();
+    for source in &related {
+        assert!(directory.join(source).is_file(), "{source}");
+    }
+    assert!(related.contains(REFERENCE_INPUT) && related.contains(REFERENCE_OUTPUT));
+}
