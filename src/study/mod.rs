@@ -3,6 +3,8 @@
 //! An experiment opens packages with the [`crate::host`], runs them, and hands back figures and claims; everything
 //! that is written to disk goes through [`output`].
 
+pub mod ball;
+pub mod ball_monte_carlo;
 pub mod bearing;
 pub mod bearing_observers;
 pub mod chart;
@@ -80,6 +82,16 @@ pub static EXPERIMENTS: &[Experiment] = &[
         name: "bearing-observers",
         summary: "all observers of the magnetic bearing under noise, next to the Cramer-Rao bound",
         run: bearing_observers::run,
+    },
+    Experiment {
+        name: "ball",
+        summary: "sensorless control of a levitated ball: figures 2 to 7 and the claims",
+        run: ball::run,
+    },
+    Experiment {
+        name: "ball-monte-carlo",
+        summary: "the levitated ball's estimators under wrong parameters and noise, 1000 runs each",
+        run: ball_monte_carlo::run,
     },
     Experiment {
         name: "rig",

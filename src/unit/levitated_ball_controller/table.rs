@@ -129,6 +129,9 @@ variable_table! {
     EXCITATION_SCALE = Variable::tunable("observer.excitation_scale", Kind::Real(&RATIO), 1e9)
         .range(0.0, 1e15)
         .describe("kappa of drem, a mere unit of its determinant; 1e9 suits the sinusoids, 1e10 the steps");
+    NORMALISATION = Variable::tunable("observer.normalisation", Kind::Real(&RATIO), 0.0)
+        .range(0.0, 1e15)
+        .describe("mu: if not 0, the gain of drem is divided by mu^2 + Delta^2; not in the paper");
     PREFILTER_1 = prefilter("observer.prefilter[1]", 100.0);
     PREFILTER_2 = prefilter("observer.prefilter[2]", 300.0);
     FILTER_1 = filter("observer.filter[1]", 10.0);
@@ -153,6 +156,8 @@ variable_table! {
     STARTUP_HOLD = Variable::parameter("observer.startup_hold", Kind::Real(&DURATION), 0.1)
         .range(0.0, 1e3)
         .describe("Time the offset stays frozen until the prefilters have forgotten the start");
+    FILTERS_FROM_ZERO = Variable::parameter("observer.filters_from_zero", Kind::Boolean, 0.0)
+        .describe("For studies: all filters start from zero instead of from a ball at rest, which makes the start wrong");
     INITIAL_FLUX = Variable::parameter("observer.initial.flux", Kind::Real(&FLUX), LABORATORY_FLUX)
         .range(-10.0, 10.0)
         .describe("chi(0), where the integral of the induced voltage starts; the start value is the flux that \
