@@ -11,9 +11,12 @@ use maglev_fmu::fmi::fmi3::{
     fmi3FreeFMUState, fmi3FreeInstance, fmi3GetFMUState, fmi3SerializeFMUState, fmi3SerializedFMUStateSize,
     fmi3SetFMUState,
 };
-use maglev_fmu::fmi::{Callback, Instance, LONGEST_SAVED_STATE, Logger};
+use maglev_fmu::fmi::{Callback, Instance, Interface, LONGEST_SAVED_STATE, Logger};
 use maglev_fmu::unit::{MAGNETIC_BEARING_CONTROLLER, UNITS, UnitType};
 use measure::{Candidate, medians, verdict};
+
+/// What one call does.
+type Work = Box<dyn FnMut()>;
 
 const CALLS: usize = 2000;
 const ROUNDS: usize = 51;
@@ -33,7 +36,8 @@ impl Subject {
             unit.values_mut()[reference] = *value;
         }
         let logger = Logger::new(Callback::None, c"subject".into(), false);
-        let handle: *mut c_void = Box::into_raw(Box::new(Instance::new(unit, logger))).cast();
+        let handle: *mut c_void =
+            Box::into_raw(Box::new(Instance::new(unit, Interface::CoSimulation, logger))).cast();
         let (mut state, mut size) = (null_mut(), 0);
         // SAFETY: a live handle, room for the results.
         unsafe {
@@ -108,7 +112,7 @@ fn main() {
         let (mut saved, saved_anew, restored) = (subject(), subject(), subject());
         let (mut serialised, mut deserialised) = (subject(), subject());
         let size = saved.bytes.len() as f64;
-        let works: [(&str, Box<dyn FnMut()>); 5] = [
+        let works: [(&str, Work); 5] = [
             ("save", Box::new(repeated(move || saved.save()))),
             ("save to new memory and free", Box::new(repeated(move || saved_anew.save_and_free()))),
             ("restore", Box::new(repeated(move || restored.restore()))),

@@ -7,6 +7,8 @@ use crate::unit::variable::{Causality, Kind, Variability, Variable};
 pub(super) struct DataType {
     pub name: &'static str,
     pub carries: fn(&Kind) -> bool,
+    /// Whether the standard has clocks, too.
+    pub has_clocks: bool,
 }
 
 impl Instance {
@@ -20,8 +22,10 @@ impl Instance {
         convert: impl Fn(f64) -> T,
     ) -> Result<(), CallError> {
         self.refresh_before_first_step()?;
+        self.evaluate();
         for reference in references {
             self.find(data_type, *reference)?;
+            self.require_computed(*reference as usize)?;
         }
         let source = self.unit.values();
         for (value, reference) in values.iter_mut().zip(references) {
@@ -42,7 +46,7 @@ impl Instance {
         let mut parameters_changed = false;
         for (reference, value) in references.iter().zip(values) {
             let variable = self.find(data_type, *reference)?;
-            require_settable(variable, self.phase)?;
+            self.require_settable(*reference, variable)?;
             variable.check(convert(*value))?;
             parameters_changed |= variable.causality == Causality::Parameter;
         }
@@ -50,9 +54,12 @@ impl Instance {
         for (reference, value) in references.iter().zip(values) {
             target[*reference as usize] = convert(*value);
         }
-        if self.phase != Phase::StepMode {
+        if matches!(self.phase, Phase::Instantiated | Phase::InitializationMode) {
             self.is_stale = true;
-        } else if parameters_changed {
+            return Ok(());
+        }
+        self.needs_evaluation = true;
+        if parameters_changed {
             self.unit.adopt_parameters();
         }
         Ok(())
@@ -60,17 +67,35 @@ impl Instance {
 
     /// Calculated values follow parameters and inputs until the first step.
     #[inline]
-    fn refresh_before_first_step(&mut self) -> Result<(), CallError> {
+    pub(super) fn refresh_before_first_step(&mut self) -> Result<(), CallError> {
         if self.is_stale && matches!(self.phase, Phase::Instantiated | Phase::InitializationMode) {
             self.refresh()?;
         }
         Ok(())
     }
 
+    /// Why there is no variable with this value reference.
+    #[cold]
+    fn no_variable(&self, data_type: &DataType, reference: u32) -> CallError {
+        if !data_type.has_clocks {
+            return CallError::UnknownReference { reference, largest: self.variables.len() - 1 };
+        }
+        let mut clocks = self.unit.description().clocks();
+        match clocks.find(|(known, _)| *known == reference as usize) {
+            Some((_, clock)) => CallError::IsClock { name: clock.name, reference, asked: data_type.name },
+            None => self.unknown_reference(reference),
+        }
+    }
+
+    pub(super) fn unknown_reference(&self, reference: u32) -> CallError {
+        let clocks = self.unit.description().clocks().count();
+        CallError::UnknownReference { reference, largest: self.variables.len() + clocks - 1 }
+    }
+
     #[inline]
     fn find(&self, data_type: &DataType, reference: u32) -> Result<&'static Variable, CallError> {
         let Some(variable) = self.variables.get(reference as usize) else {
-            return Err(CallError::UnknownReference { reference, largest: self.variables.len() - 1 });
+            return Err(self.no_variable(data_type, reference));
         };
         if (data_type.carries)(&variable.kind) {
             return Ok(variable);
@@ -87,17 +112,32 @@ impl Instance {
             asked: data_type.name,
         })
     }
-}
 
-/// Before the first step parameters and inputs may be set, afterwards inputs and tunable parameters.
-#[inline]
-fn require_settable(variable: &Variable, phase: Phase) -> Result<(), CallError> {
-    let why = match (variable.causality, variable.variability) {
-        (Causality::Input, _) | (Causality::Parameter, Variability::Tunable) => return Ok(()),
-        (Causality::Parameter, _) if phase != Phase::StepMode => return Ok(()),
-        (Causality::Parameter, _) => "a fixed parameter",
-        (Causality::Independent, _) => "the independent variable",
-        _ => "calculated by the unit",
-    };
-    Err(CallError::NotSettable { name: variable.name, why, phase: phase.name() })
+    /// Before the first step parameters and inputs may be set, afterwards inputs and tunable parameters. An importer
+    /// that integrates the unit may set continuous inputs and states in continuous time, and at an event also states
+    /// that do not jump (FMI 3.0.2, section 2.3.5). Within a step continuous inputs may be set, too.
+    #[inline]
+    fn require_settable(&self, reference: u32, variable: &Variable) -> Result<(), CallError> {
+        let is_initial = matches!(self.phase, Phase::Instantiated | Phase::InitializationMode);
+        let is_continuous_time =
+            matches!(self.phase, Phase::ContinuousTimeMode | Phase::IntermediateUpdateMode);
+        let why = match (variable.causality, variable.variability) {
+            (Causality::Input, Variability::Continuous) => return Ok(()),
+            (Causality::Input, _) | (Causality::Parameter, Variability::Tunable) if !is_continuous_time => {
+                return Ok(());
+            }
+            (Causality::Input, _) => "a discrete input",
+            (Causality::Parameter, Variability::Tunable) => "a parameter",
+            (Causality::Parameter, _) if is_initial => return Ok(()),
+            (Causality::Parameter, _) => "a fixed parameter",
+            (Causality::Independent, _) => "the independent variable",
+            _ if self.rows.states().contains(&(reference as usize)) => match self.phase {
+                Phase::ContinuousTimeMode => return Ok(()),
+                Phase::EventMode if !variable.is_reinitialised => return Ok(()),
+                _ => "a continuous state",
+            },
+            _ => "calculated by the unit",
+        };
+        Err(CallError::NotSettable { name: variable.name, why, phase: self.phase.name() })
+    }
 }

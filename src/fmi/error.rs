@@ -14,6 +14,8 @@ pub enum CallError {
     NullPointer(&'static str),
     #[error("{argument} = {got}: expected {expected}, one value per value reference")]
     WrongLength { argument: &'static str, got: usize, expected: usize },
+    #[error("{argument} = {got}: expected {expected}")]
+    WrongCount { argument: &'static str, got: usize, expected: usize },
     #[error("value reference {reference} is unknown: expected 0 to {largest}")]
     UnknownReference { reference: u32, largest: usize },
     #[error("{name} (value reference {reference}) is {is}, not {asked}")]
@@ -28,8 +30,32 @@ pub enum CallError {
     TimeDoesNotFollow { got: f64, expected: f64 },
     #[error(transparent)]
     Unit(#[from] UnitError),
+    #[error("{name} (value reference {reference}) is a variable, not a clock")]
+    NoClock { name: &'static str, reference: u32 },
+    #[error("{name} (value reference {reference}) is a clock, not {asked}")]
+    IsClock { name: &'static str, reference: u32, asked: &'static str },
+    #[error("no tick is due at t = {now} s: expected t = {next} s")]
+    NoTick { now: f64, next: f64 },
+    #[error("a clock that was activated stays active until the end of the event iteration")]
+    ClockStaysActive,
+    #[error("activationTime = {got} s: expected a finite time after {last} s")]
+    ActivationTime { got: f64, last: f64 },
+    #[error(
+        "{name} = {value} has no exact fraction of 64-bit numbers: expected a number of seconds such as 0.001"
+    )]
+    NoFraction { name: &'static str, value: f64 },
     #[error(transparent)]
     State(#[from] StateError),
+    #[error("not a function of {0}, for which the instance was made")]
+    WrongInterface(&'static str),
+    #[error("{name} cannot be computed here: {value} {unit}")]
+    NotComputable { name: &'static str, value: f64, unit: &'static str },
+    #[error("{name} (value reference {reference}) is {is}: expected {expected}")]
+    WrongRole { name: &'static str, reference: u32, is: &'static str, expected: &'static str },
+    #[error("order {order} of the derivative of {name}: expected 1")]
+    WrongOrder { name: &'static str, order: i32 },
+    #[error("continuous state {0}")]
+    StateRejected(ValueError),
     #[error("category number {0} is not declared in the model description: expected one of {categories}", categories = super::log::CategoryList)]
     UnknownCategory(usize),
     #[error("not offered by this unit: {0}")]
@@ -45,6 +71,8 @@ impl CallError {
             // "If a status is required which cannot be retrieved by the slave it returns fmi2Discard", FMI 2.0.5,
             // section 4.2.3.
             Self::NoSuchStatus(_) => Status::Discard,
+            // The solver may try a shorter step: FMI 3.0.2, section 3.2.1 (fmi3SetContinuousStates and the getters).
+            Self::StateRejected(_) | Self::NotComputable { .. } => Status::Discard,
             _ => Status::Error,
         }
     }

@@ -3,10 +3,13 @@
 use core::ffi::CStr;
 use core::fmt;
 
+use super::fmi3::types::{fmi3ClockUpdateCallback, fmi3InstanceEnvironment};
+use super::intermediate_update::{IntermediateUpdate, StepInProgress};
 use super::saved_state::Life;
-use super::{CallError, Callback, CommunicationPoint, Function, Logger, Phase};
+use super::ticking::ClockStates;
+use super::{CallError, Callback, CommunicationPoint, Function, Interface, Logger, Phase};
 use crate::unit::variable::Variable;
-use crate::unit::{Journal, TIME, Topic, UNITS, Unit};
+use crate::unit::{ContinuousRows, Description, Journal, TIME, Topic, UNITS, Unit};
 
 /// What a handle (`fmi2Component`, `fmi3Instance`) points to.
 pub struct Instance {
@@ -14,26 +17,45 @@ pub struct Instance {
     /// The unit as made, for reset.
     template: Box<dyn Unit>,
     pub(super) variables: &'static [Variable],
+    /// Where the table holds what moves in continuous time.
+    pub(super) rows: ContinuousRows,
+    pub(super) interface: Interface,
     pub(super) phase: Phase,
     pub(super) logger: Logger,
     pub(super) communication: CommunicationPoint,
-    start_time: f64,
+    pub(super) start_time: f64,
     /// Whether a value was set since the calculated ones were last computed, before the first step.
     pub(super) is_stale: bool,
+    /// Whether a state or an input was set since what follows from them was last computed, after initialisation.
+    pub(super) needs_evaluation: bool,
+    pub(super) clocks: ClockStates,
+    /// How the importer wants to be called back within a step.
+    pub(super) intermediate_update: Option<IntermediateUpdate>,
+    /// The step within which it is called back.
+    pub(super) step: Option<StepInProgress>,
+    /// How a scheduler wants to be told of the clock `ticked`.
+    pub(super) clock_update: Option<(fmi3ClockUpdateCallback, fmi3InstanceEnvironment)>,
 }
 
 impl Instance {
     /// An instance of any unit, not only of those the library knows by token.
-    pub fn new(unit: Box<dyn Unit>, logger: Logger) -> Self {
+    pub fn new(unit: Box<dyn Unit>, interface: Interface, logger: Logger) -> Self {
         Self {
             template: unit.boxed_clone(),
             variables: unit.description().variables,
+            rows: ContinuousRows::of(unit.description()),
             unit,
+            interface,
             phase: Phase::Instantiated,
             logger,
             communication: CommunicationPoint::new(0.0),
             start_time: 0.0,
             is_stale: true,
+            needs_evaluation: false,
+            clocks: ClockStates::default(),
+            intermediate_update: None,
+            step: None,
+            clock_update: None,
         }
     }
 
@@ -83,10 +105,21 @@ impl Instance {
         Ok(())
     }
 
+    /// Computes what follows from states and inputs at this instant if one of them was set, after initialisation.
+    #[inline]
+    pub(super) fn evaluate(&mut self) {
+        if self.needs_evaluation {
+            if let Some(unit) = self.unit.continuous() {
+                unit.evaluate();
+            }
+            self.needs_evaluation = false;
+        }
+    }
+
     pub(super) fn exit_initialization_mode(&mut self) -> Result<(), CallError> {
         self.is_stale = true;
         self.refresh()?;
-        self.phase = Phase::StepMode;
+        self.phase = self.interface.first_phase();
         let (name, start_time) = (self.unit.description().name, self.start_time);
         self.note(format_args!("{name} initialised at t = {start_time} s"));
         Ok(())
@@ -97,6 +130,7 @@ impl Instance {
     pub(super) fn do_step(&mut self, point: f64, step_size: f64) -> Result<(), CallError> {
         let duration = self.communication.duration(point, step_size)?;
         self.unit.advance(duration, &mut self.logger)?;
+        self.needs_evaluation = false;
         self.communication.advance(point, step_size);
         self.unit.values_mut()[TIME] = self.communication.now();
         Ok(())
@@ -115,28 +149,32 @@ impl Instance {
         self.start_time = 0.0;
         self.communication = CommunicationPoint::new(0.0);
         self.is_stale = true;
+        self.clocks = ClockStates::default();
+        self.needs_evaluation = false;
         self.note(format_args!("reset"));
         Ok(())
     }
 
     /// Whether the instance can get into `phase`.
     pub(super) fn reaches(&self, phase: Phase) -> bool {
-        matches!(phase, Phase::Instantiated | Phase::InitializationMode | Phase::StepMode | Phase::Terminated)
+        self.interface.reaches(phase)
     }
 
     /// What a saved state has to tell besides the unit.
     pub(super) fn life(&self) -> Life {
-        let Self { phase, communication, start_time, is_stale, .. } = *self;
-        Life { phase, communication, start_time, is_stale }
+        let Self { phase, communication, start_time, is_stale, needs_evaluation, clocks, .. } = *self;
+        Life { phase, communication, start_time, is_stale, needs_evaluation, clocks }
     }
 
     /// Goes on from a saved state; the unit has been restored.
     pub(super) fn resume(&mut self, life: Life) {
-        let Life { phase, communication, start_time, is_stale } = life;
+        let Life { phase, communication, start_time, is_stale, needs_evaluation, clocks } = life;
         self.phase = phase;
         self.communication = communication;
         self.start_time = start_time;
         self.is_stale = is_stale;
+        self.needs_evaluation = needs_evaluation;
+        self.clocks = clocks;
     }
 
     pub(super) fn note(&mut self, message: fmt::Arguments<'_>) {
@@ -144,30 +182,51 @@ impl Instance {
     }
 }
 
-/// Makes an instance of the unit whose token is `token`, or logs why not. `refused_interface` names the interface
-/// type that was asked for when it is not the one on offer.
+/// Makes an instance of the unit whose token is `token` for an interface type, or logs why not. `interface` is the name
+/// of what was asked for if no unit offers it.
 pub(super) fn instantiate(
     function: &str,
     name: Option<&CStr>,
     token: Option<&CStr>,
     callback: Callback,
     logging_on: bool,
-    refused_interface: Option<&str>,
+    interface: Result<Interface, &str>,
 ) -> Option<Instance> {
     let logger = Logger::new(callback, name.unwrap_or_default().into(), logging_on);
-    if let Some(interface) = refused_interface {
-        logger.error(format_args!("{function}: {interface} is not offered, only co-simulation"));
-        return None;
-    }
+    let interface = match interface {
+        Ok(interface) => interface,
+        Err(asked) => {
+            logger.error(format_args!("{function}: {asked} is not offered"));
+            return None;
+        }
+    };
     let token = token.unwrap_or_default().to_str().unwrap_or_default();
     let Some(unit) = UNITS.iter().find(|unit| unit.description.token().as_str() == token) else {
         logger
             .error(format_args!("{function}: the token \"{token}\" is none of this library: {KnownTokens}"));
         return None;
     };
-    let mut instance = Instance::new((unit.create)(), logger);
+    if !interface.is_offered_by(unit.description) {
+        let (name, asked) = (unit.description.name, interface.name());
+        let offered = Offered(unit.description);
+        logger.error(format_args!("{function}: {name} does not offer {asked}, only {offered}"));
+        return None;
+    }
+    let mut instance = Instance::new((unit.create)(), interface, logger);
     instance.note(format_args!("{} instantiated", unit.description.name));
     Some(instance)
+}
+
+/// The interface types of a unit, for an error message.
+struct Offered(&'static Description);
+
+impl fmt::Display for Offered {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let offered = Interface::ALL.iter().filter(|interface| interface.is_offered_by(self.0));
+        offered.enumerate().try_for_each(|(index, interface)| {
+            write!(formatter, "{}{}", if index == 0 { "" } else { ", " }, interface.name())
+        })
+    }
 }
 
 /// All units with their tokens, for an error message.

@@ -6,20 +6,28 @@
 mod access;
 mod boundary;
 mod communication;
+mod derivatives;
 mod error;
+mod event_mode;
 pub mod fmi2;
 pub mod fmi3;
+mod fraction;
 mod instance;
+mod interface;
+mod intermediate_update;
 mod log;
+mod model_exchange;
 mod phase;
 mod saved_state;
 mod state_handle;
 mod status;
+mod ticking;
 mod version;
 
 pub use communication::CommunicationPoint;
 pub use error::CallError;
 pub use instance::Instance;
+pub use interface::Interface;
 pub use log::{Callback, LOG_CATEGORIES, Logger};
 pub use phase::{Function, Phase};
 pub use saved_state::{LONGEST_SAVED_STATE, SavedState, StateError};

@@ -1,7 +1,9 @@
 //! What is exported: per unit its variable table, and how plant, observer and law are wired and sampled.
 //! Knows nothing of FMI.
 
+pub mod continuous;
 pub mod description;
+mod end_stop_events;
 mod levitated_ball;
 mod levitated_ball_controller;
 mod levitated_ball_plant;
@@ -14,12 +16,14 @@ mod magnetic_bearing_plant;
 pub mod persistence;
 pub mod quantity;
 pub mod sample_clock;
+pub mod sampled;
 pub mod system;
 pub mod value;
 pub mod variable;
 
 use core::fmt;
 
+pub use continuous::{ContinuousRows, ContinuousUnit};
 pub use description::{Description, Token};
 pub use levitated_ball_controller::LevitatedBallController;
 pub use levitated_ball_plant::LevitatedBallPlant;
@@ -28,6 +32,7 @@ pub use maglev_rig_plant::MaglevRigPlant;
 pub use magnetic_bearing_controller::MagneticBearingController;
 pub use magnetic_bearing_plant::MagneticBearingPlant;
 pub use persistence::Persistent;
+pub use sampled::SampledUnit;
 pub use system::System;
 use thiserror::Error;
 
@@ -60,6 +65,8 @@ impl Journal for Silence {
 /// Why a unit refused to run; it is left as it was before the call.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum UnitError {
+    #[error("an input with a slope leaves its range within the step: {0}")]
+    InputLeavesRange(value::ValueError),
     #[error("{name} would become {value} {unit} within the step: expected a finite number")]
     Diverged { name: &'static str, value: f64, unit: &'static str },
     #[error("{ticks} ticks within one step of {duration} s: expected at most {limit}")]
@@ -92,6 +99,16 @@ pub trait Unit: Persistent + Send {
 
     /// Lets `duration` \[s\], positive and finite, pass with the present inputs held.
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError>;
+
+    /// The unit as one that acts at ticks, if it is: exactly those are whose description says so.
+    fn sampled(&mut self) -> Option<&mut dyn SampledUnit> {
+        None
+    }
+
+    /// The unit as one that an importer may integrate, if it is.
+    fn continuous(&mut self) -> Option<&mut dyn ContinuousUnit> {
+        None
+    }
 
     /// Whether what the unit has computed from its parameters still belongs to them, once it is initialised. Asked of
     /// units read from bytes only, which anybody may have written; a unit answers for whatever could make it panic
@@ -182,7 +199,9 @@ mod tests {
                     );
                 }
             }
-            assert_eq!((unit.create)().values().len(), variables.len());
+            let mut made = (unit.create)();
+            assert_eq!(made.values().len(), variables.len());
+            assert_eq!(made.sampled().is_some(), unit.description.is_sampled(), "{}", unit.description.name);
         }
     }
 

@@ -4,8 +4,8 @@ mod elements;
 
 pub use elements::ModelDescription;
 use elements::{
-    CoSimulation, ModelStructure, ModelVariables, Type, TypeDefinitions, TypedVariable, Unknown,
-    VariableAttributes,
+    ClockAttributes, CoSimulation, ModelExchange, ModelStructure, ModelVariables, ScheduledExecution, Type,
+    TypeDefinitions, TypedVariable, Unknown, VariableAttributes,
 };
 
 use super::common::{
@@ -15,6 +15,7 @@ use super::common::{
 use super::roles;
 use crate::package::{Capabilities, FmiVersion, GenerationTime, licenses};
 use crate::unit::Description;
+use crate::unit::sampled::ClockVariable;
 use crate::unit::variable::{Kind, Variable};
 
 impl ModelDescription {
@@ -31,17 +32,40 @@ impl ModelDescription {
             generation_tool: GENERATION_TOOL,
             generation_time: time.map(|time| time.to_string()),
             variable_naming_convention: "structured",
+            model_exchange: description.offers_model_exchange().then(|| ModelExchange::new(description)),
             co_simulation: CoSimulation::new(description),
+            scheduled_execution: ScheduledExecution::new(description),
             unit_definitions: UnitDefinitions::new(description),
             type_definitions: TypeDefinitions::new(description),
             log_categories: LogCategories::new(),
             default_experiment: DefaultExperiment::new(description),
             model_variables: ModelVariables {
                 variables: variables
-                    .map(|(reference, variable)| TypedVariable::new(reference, variable))
+                    .map(|(reference, variable)| TypedVariable::new(description, reference, variable))
+                    .chain(
+                        description.clocks().map(|(reference, clock)| TypedVariable::clock(reference, clock)),
+                    )
                     .collect(),
             },
             model_structure: ModelStructure::new(description),
+        }
+    }
+}
+
+impl ModelExchange {
+    fn new(description: &Description) -> Self {
+        let can = Capabilities::of(description);
+        Self {
+            model_identifier: description.name,
+            needs_execution_tool: can.needs_execution_tool,
+            can_be_instantiated_only_once_per_process: can.can_be_instantiated_only_once_per_process,
+            can_get_and_set_fmu_state: can.can_get_and_set_fmu_state,
+            can_serialize_fmu_state: can.can_serialize_fmu_state,
+            provides_directional_derivatives: can.provides_directional_derivatives,
+            provides_adjoint_derivatives: can.provides_adjoint_derivatives,
+            provides_per_element_dependencies: can.provides_per_element_dependencies,
+            needs_completed_integrator_step: can.needs_completed_integrator_step,
+            provides_evaluate_discrete_states: can.provides_evaluate_discrete_states,
         }
     }
 }
@@ -69,6 +93,22 @@ impl CoSimulation {
     }
 }
 
+impl ScheduledExecution {
+    fn new(description: &Description) -> Option<Self> {
+        let can = Capabilities::of(description);
+        can.offers_scheduled_execution.then_some(Self {
+            model_identifier: description.name,
+            needs_execution_tool: can.needs_execution_tool,
+            can_be_instantiated_only_once_per_process: can.can_be_instantiated_only_once_per_process,
+            can_get_and_set_fmu_state: can.can_get_and_set_fmu_state,
+            can_serialize_fmu_state: can.can_serialize_fmu_state,
+            provides_directional_derivatives: can.provides_directional_derivatives,
+            provides_adjoint_derivatives: can.provides_adjoint_derivatives,
+            provides_per_element_dependencies: can.provides_per_element_dependencies,
+        })
+    }
+}
+
 impl TypeDefinitions {
     fn new(description: &Description) -> Self {
         let reals = quantities(description).into_iter().map(|quantity| Type::Float64Type {
@@ -89,7 +129,22 @@ impl TypeDefinitions {
 }
 
 impl TypedVariable {
-    fn new(value_reference: usize, variable: &Variable) -> Self {
+    fn clock(value_reference: usize, clock: &ClockVariable) -> Self {
+        // The interval follows from a fixed parameter, so the clock is a fixed one without intervalDecimal; section
+        // 2.4.5.1 asks for that attribute, but by section 2.2.9.1 an importer would then have to set the interval.
+        Self::Clock(ClockAttributes {
+            name: clock.name,
+            value_reference,
+            description: clock.description,
+            causality: if clock.is_input { "input" } else { "output" },
+            variability: "discrete",
+            priority: clock.is_input.then_some(0),
+            interval_variability: if clock.is_input { "fixed" } else { "triggered" },
+            supports_fraction: clock.is_input.then_some(true),
+        })
+    }
+
+    fn new(description: &Description, value_reference: usize, variable: &Variable) -> Self {
         let [minimum, maximum] = roles::range(variable);
         let attributes = |declared_type| VariableAttributes {
             name: variable.name,
@@ -98,10 +153,13 @@ impl TypedVariable {
             causality: roles::causality(variable),
             variability: roles::variability(variable),
             initial: roles::initial(variable),
+            intermediate_update: roles::may_be_set_within_a_step(description, variable).then_some(true),
             declared_type,
             minimum,
             maximum,
             start: roles::start(variable),
+            derivative: roles::derivative_of(description, variable),
+            reinit: roles::reinit(variable),
         };
         match variable.kind {
             Kind::Real(quantity) => Self::Float64(attributes(Some(quantity.name))),
@@ -112,19 +170,44 @@ impl TypedVariable {
     }
 }
 
+/// Clocks that the unit activates: a tick of the input clocks is one of theirs.
+fn output_clocks(description: &Description) -> impl Iterator<Item = Unknown> {
+    let clocks = |is_input| {
+        let clocks = description.clocks().filter(move |(_, clock)| clock.is_input == is_input);
+        clocks.map(|(reference, _)| reference)
+    };
+    clocks(false).map(move |value_reference| Unknown {
+        value_reference,
+        dependencies: clocks(true).map(|reference| reference.to_string()).collect::<Vec<_>>().join(" "),
+        dependencies_kind: Some(clocks(true).map(|_| "dependent").collect::<Vec<_>>().join(" ")),
+    })
+}
+
 impl ModelStructure {
     fn new(description: &Description) -> Self {
-        let unknown = |value_reference, dependencies: &[usize]| Unknown {
+        let unknown = |value_reference, dependencies: roles::Dependencies| Unknown {
             value_reference,
-            dependencies: roles::joined(dependencies),
-            dependencies_kind: roles::dependencies_kind(dependencies.len()),
+            dependencies: dependencies.list(0),
+            dependencies_kind: dependencies.kind_list(),
         };
+        let at_an_instant =
+            |reference| unknown(reference, roles::Dependencies::at_an_instant(description, reference, true));
         Self {
-            // Outputs change in a step only: at a communication point they depend on nothing.
-            outputs: roles::outputs(description).map(|reference| unknown(reference, &[])).collect(),
-            initial_unknowns: roles::initial_unknowns(description)
-                .map(|(reference, dependencies)| unknown(reference, &dependencies))
+            outputs: roles::outputs(description)
+                .map(at_an_instant)
+                .chain(output_clocks(description))
                 .collect(),
+            derivatives: roles::derivatives(description).map(at_an_instant).collect(),
+            initial_unknowns: roles::initial_unknowns(description)
+                .map(|(reference, dependencies)| unknown(reference, dependencies))
+                // No clock is active during initialisation.
+                .chain(output_clocks(description).map(|clock| Unknown {
+                    dependencies: String::new(),
+                    dependencies_kind: None,
+                    ..clock
+                }))
+                .collect(),
+            event_indicators: description.event_indicators().map(at_an_instant).collect(),
         }
     }
 }
