@@ -1,6 +1,8 @@
 //! Packages with start values of their own: description and library agree, whatever an importer sets.
 
-use std::path::Path;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
 use maglev_fmu::fmi::FmiVersion;
 use maglev_fmu::host::{Fmu, Instance, Logging};
@@ -11,20 +13,20 @@ use serde_json::json;
 const VALUES: [(&str, f64); 3] =
     [("controller.k1", 0.1 + 0.2), ("controller.initial_voltage", -75.0), ("observer.kind", 4.0)];
 
-/// Packages whose controller starts with [`VALUES`].
-fn packages() -> tempfile::TempDir {
+/// Packages whose controller starts with [`VALUES`], made once for all tests.
+static PACKAGES: LazyLock<PathBuf> = LazyLock::new(|| {
     let file = ParameterFile::new(
         CONTROLLER.description,
         VALUES.map(|(name, value)| (name, value.into())),
         json!(null),
     )
     .unwrap();
-    let directory = tempfile::tempdir().unwrap();
+    let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join("package_start_values");
     let library = Library::of_this_build().unwrap();
     let time = GenerationTime::of_this_build().unwrap();
-    package::build_with(directory.path(), &[file.start_values().unwrap()], &[library], time).unwrap();
+    package::build_with(&directory, &[file.start_values().unwrap()], &[library], time).unwrap();
     directory
-}
+});
 
 fn open(packages: &Path, version: FmiVersion) -> Fmu {
     Fmu::open(&packages.join(version.directory()).join("MagneticBearingController.fmu")).unwrap()
@@ -38,9 +40,8 @@ fn voltage_of_first_tick(instance: &mut Instance) -> f64 {
 
 #[test]
 fn library_starts_with_what_the_description_says() {
-    let packages = packages();
     for version in FmiVersion::ALL {
-        let fmu = open(packages.path(), version);
+        let fmu = open(&PACKAGES, version);
         // Nothing is set.
         let mut instance = fmu.instantiate("controller", Logging::Off).unwrap();
         instance.initialise(0.0, None).unwrap();
@@ -62,9 +63,8 @@ fn library_starts_with_what_the_description_says() {
 
 #[test]
 fn start_values_can_still_be_set() {
-    let packages = packages();
     for version in FmiVersion::ALL {
-        let mut instance = open(packages.path(), version).instantiate("controller", Logging::Off).unwrap();
+        let mut instance = open(&PACKAGES, version).instantiate("controller", Logging::Off).unwrap();
         instance.set_by_name("controller.initial_voltage", -20.0).unwrap();
         assert_eq!(voltage_of_first_tick(&mut instance), -20.0);
     }
@@ -72,9 +72,8 @@ fn start_values_can_still_be_set() {
 
 #[test]
 fn a_forged_start_value_is_refused() {
-    let packages = packages();
     for version in FmiVersion::ALL {
-        let fmu = open(packages.path(), version);
+        let fmu = open(&PACKAGES, version);
         let token = CONTROLLER.description.token();
         let (reference, _) = CONTROLLER.description.find("sample_time").unwrap();
         for (tail, reason) in [
@@ -86,4 +85,19 @@ fn a_forged_start_value_is_refused() {
             assert!(error.to_string().contains(reason), "{error}");
         }
     }
+}
+
+#[test]
+fn parameter_sets_of_the_system_agree() {
+    let file = std::fs::File::open(PACKAGES.join("bearing.ssp")).unwrap();
+    let mut archive = zip::ZipArchive::new(file).unwrap();
+    let mut text = String::new();
+    archive.by_name("resources/controller.ssv").unwrap().read_to_string(&mut text).unwrap();
+    let of = |name: &str| {
+        let from = text.find(&format!("name=\"{name}\"")).unwrap();
+        text[from..].split("value=\"").nth(1).unwrap().split('"').next().unwrap().parse::<f64>().unwrap()
+    };
+    assert_eq!(of("controller.k1"), 0.1 + 0.2);
+    assert_eq!(of("controller.initial_voltage"), -75.0);
+    assert_eq!(of("controller.k2"), 9.94);
 }

@@ -93,7 +93,7 @@ pub fn build_with(
             replace_file(&path, &bytes)?;
             written.push(WrittenFile { path, size: bytes.len() });
             if version == system_structure::FMI_VERSION {
-                for_systems.insert(unit.description.name, bytes);
+                for_systems.insert(unit.description.name, (bytes, own));
             }
         }
     }
