@@ -11,7 +11,7 @@ use maglev_fmu::fmi::fmi3::{
     fmi3FreeFMUState, fmi3FreeInstance, fmi3GetFMUState, fmi3SerializeFMUState, fmi3SerializedFMUStateSize,
     fmi3SetFMUState,
 };
-use maglev_fmu::fmi::{Callback, Instance, LONGEST_SAVED_STATE, Logger};
+use maglev_fmu::fmi::{Callback, Instance, Interface, LONGEST_SAVED_STATE, Logger};
 use maglev_fmu::unit::{MAGNETIC_BEARING_CONTROLLER, UNITS, UnitType};
 use measure::{Candidate, medians, verdict};
 
@@ -33,7 +33,8 @@ impl Subject {
             unit.values_mut()[reference] = *value;
         }
         let logger = Logger::new(Callback::None, c"subject".into(), false);
-        let handle: *mut c_void = Box::into_raw(Box::new(Instance::new(unit, logger))).cast();
+        let handle: *mut c_void =
+            Box::into_raw(Box::new(Instance::new(unit, Interface::CoSimulation, logger))).cast();
         let (mut state, mut size) = (null_mut(), 0);
         // SAFETY: a live handle, room for the results.
         unsafe {

@@ -6,7 +6,7 @@ mod package_xml;
 use std::collections::{BTreeMap, BTreeSet};
 
 use maglev_fmu::package::{Capabilities, FmiVersion, GenerationTime, model_description};
-use maglev_fmu::unit::variable::{Causality, Kind};
+use maglev_fmu::unit::variable::{Causality, DependencyKind, Kind};
 use maglev_fmu::unit::{Description, UNITS};
 use package_xml::Element;
 
@@ -147,6 +147,61 @@ fn flags_are_those_of_the_library() {
         assert_eq!(flags.attribute("maxOutputDerivativeOrder"), Some(order.as_str()));
         // Nothing but those, the order and the identifier.
         assert_eq!(flags.attributes.len(), expected.len() + 2);
+    });
+}
+
+#[test]
+fn flags_of_model_exchange_are_those_of_the_library() {
+    check_all(|description, version, root| {
+        let can = Capabilities::of(description);
+        let elements: Vec<&Element> = root.children_named("ModelExchange").collect();
+        assert_eq!(elements.len(), usize::from(description.offers_model_exchange()), "{}", description.name);
+        let Some(flags) = elements.first() else { return };
+        assert_eq!(flags.attribute("modelIdentifier"), Some(description.name));
+        let mut expected = vec![
+            ("needsExecutionTool", can.needs_execution_tool),
+            ("canBeInstantiatedOnlyOncePerProcess", can.can_be_instantiated_only_once_per_process),
+        ];
+        expected.extend(match version {
+            FmiVersion::Two => vec![
+                ("completedIntegratorStepNotNeeded", !can.needs_completed_integrator_step),
+                ("canNotUseMemoryManagementFunctions", can.can_not_use_memory_management_functions),
+                ("canGetAndSetFMUstate", can.can_get_and_set_fmu_state),
+                ("canSerializeFMUstate", can.can_serialize_fmu_state),
+                ("providesDirectionalDerivative", can.provides_directional_derivatives),
+            ],
+            FmiVersion::Three => vec![
+                ("needsCompletedIntegratorStep", can.needs_completed_integrator_step),
+                ("canGetAndSetFMUState", can.can_get_and_set_fmu_state),
+                ("canSerializeFMUState", can.can_serialize_fmu_state),
+                ("providesDirectionalDerivatives", can.provides_directional_derivatives),
+                ("providesAdjointDerivatives", can.provides_adjoint_derivatives),
+                ("providesPerElementDependencies", can.provides_per_element_dependencies),
+                ("providesEvaluateDiscreteStates", can.provides_evaluate_discrete_states),
+            ],
+        });
+        for (flag, value) in &expected {
+            assert_eq!(flags.attribute(flag), Some(value.to_string().as_str()), "{flag}");
+        }
+        assert_eq!(flags.attributes.len(), expected.len() + 1);
+    });
+}
+
+#[test]
+fn states_are_referred_to_by_their_derivatives() {
+    check_all(|description, version, root| {
+        let offset = if version == FmiVersion::Two { 1 } else { 0 };
+        let variables = variables(root);
+        for (variable, row) in variables.iter().zip(description.variables) {
+            let state =
+                variable.value.attribute("derivative").map(|text| text.parse::<usize>().unwrap() - offset);
+            assert_eq!(state.map(|state| variables[state].name), row.derivative_of, "{}", row.name);
+            let reinit = variable.value.attribute("reinit");
+            assert_eq!(reinit, row.is_reinitialised.then_some("true"), "{}", row.name);
+        }
+        let count = description.event_indicators().count().to_string();
+        let expected = (version == FmiVersion::Two && description.offers_model_exchange()).then_some(count);
+        assert_eq!(root.attribute("numberOfEventIndicators"), expected.as_deref());
     });
 }
 
@@ -312,8 +367,58 @@ fn structure_lists_outputs_and_initial_unknowns_exactly() {
             rows.filter(|(_, row)| wanted.contains(&row.causality)).map(|(index, _)| index).collect()
         };
         assert_eq!(rows(&outputs), with_causality(&[Causality::Output]));
-        assert_eq!(rows(&unknowns), with_causality(&[Causality::Output, Causality::CalculatedParameter]));
-        assert!(outputs.iter().all(|output| output.attribute("dependencies") == Some("")));
+        let mut expected = with_causality(&[Causality::Output, Causality::CalculatedParameter]);
+        let derivatives: Vec<usize> =
+            description.continuous_states().map(|(_, derivative)| derivative).collect();
+        expected.extend(description.continuous_states().flat_map(|(state, derivative)| [state, derivative]));
+        expected.sort_unstable();
+        expected.dedup();
+        assert_eq!(rows(&unknowns), expected);
+
+        let (listed, indicators): (Vec<&Element>, Vec<&Element>) = match version {
+            FmiVersion::Two => (
+                structure.children_named("Derivatives").flat_map(|element| &element.children).collect(),
+                Vec::new(),
+            ),
+            FmiVersion::Three => (
+                structure.children_named("ContinuousStateDerivative").collect(),
+                structure.children_named("EventIndicator").collect(),
+            ),
+        };
+        assert_eq!(rows(&listed), derivatives);
+        if version == FmiVersion::Three {
+            assert_eq!(rows(&indicators), description.event_indicators().collect::<Vec<_>>());
+        }
+        for unknown in outputs.into_iter().chain(listed).chain(indicators) {
+            let variable = &description.variables[row(unknown.attribute(key).unwrap())];
+            let names: Vec<&str> = unknown
+                .attribute("dependencies")
+                .unwrap()
+                .split_whitespace()
+                .map(|text| description.variables[row(text)].name)
+                .collect();
+            let kinds: Vec<&str> =
+                unknown.attribute("dependenciesKind").unwrap_or("").split_whitespace().collect();
+            let found: BTreeSet<(&str, &str)> = names.iter().copied().zip(kinds).collect();
+            // Parameters are knowns of FMI 3.0 only.
+            let is_known = |name: &str| {
+                let (_, known) = description.find(name).unwrap();
+                version == FmiVersion::Three || known.causality != Causality::Parameter
+            };
+            let declared = variable.depends_on.iter().filter(|dependency| is_known(dependency.name));
+            let declared: BTreeSet<(&str, &str)> = declared
+                .map(|dependency| {
+                    let kind = match dependency.kind {
+                        DependencyKind::Constant => "constant",
+                        DependencyKind::Fixed => "fixed",
+                        DependencyKind::Discrete => "discrete",
+                        DependencyKind::Dependent => "dependent",
+                    };
+                    (dependency.name, kind)
+                })
+                .collect();
+            assert_eq!(found, declared, "{}", variable.name);
+        }
 
         for unknown in unknowns {
             let variable = &description.variables[row(unknown.attribute(key).unwrap())];

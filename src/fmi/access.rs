@@ -20,8 +20,10 @@ impl Instance {
         convert: impl Fn(f64) -> T,
     ) -> Result<(), CallError> {
         self.refresh_before_first_step()?;
+        self.evaluate();
         for reference in references {
             self.find(data_type, *reference)?;
+            self.require_computed(*reference as usize)?;
         }
         let source = self.unit.values();
         for (value, reference) in values.iter_mut().zip(references) {
@@ -42,7 +44,7 @@ impl Instance {
         let mut parameters_changed = false;
         for (reference, value) in references.iter().zip(values) {
             let variable = self.find(data_type, *reference)?;
-            require_settable(variable, self.phase)?;
+            self.require_settable(*reference, variable)?;
             variable.check(convert(*value))?;
             parameters_changed |= variable.causality == Causality::Parameter;
         }
@@ -50,9 +52,12 @@ impl Instance {
         for (reference, value) in references.iter().zip(values) {
             target[*reference as usize] = convert(*value);
         }
-        if self.phase != Phase::StepMode {
+        if matches!(self.phase, Phase::Instantiated | Phase::InitializationMode) {
             self.is_stale = true;
-        } else if parameters_changed {
+            return Ok(());
+        }
+        self.needs_evaluation = true;
+        if parameters_changed {
             self.unit.adopt_parameters();
         }
         Ok(())
@@ -60,7 +65,7 @@ impl Instance {
 
     /// Calculated values follow parameters and inputs until the first step.
     #[inline]
-    fn refresh_before_first_step(&mut self) -> Result<(), CallError> {
+    pub(super) fn refresh_before_first_step(&mut self) -> Result<(), CallError> {
         if self.is_stale && matches!(self.phase, Phase::Instantiated | Phase::InitializationMode) {
             self.refresh()?;
         }
@@ -87,17 +92,31 @@ impl Instance {
             asked: data_type.name,
         })
     }
-}
 
-/// Before the first step parameters and inputs may be set, afterwards inputs and tunable parameters.
-#[inline]
-fn require_settable(variable: &Variable, phase: Phase) -> Result<(), CallError> {
-    let why = match (variable.causality, variable.variability) {
-        (Causality::Input, _) | (Causality::Parameter, Variability::Tunable) => return Ok(()),
-        (Causality::Parameter, _) if phase != Phase::StepMode => return Ok(()),
-        (Causality::Parameter, _) => "a fixed parameter",
-        (Causality::Independent, _) => "the independent variable",
-        _ => "calculated by the unit",
-    };
-    Err(CallError::NotSettable { name: variable.name, why, phase: phase.name() })
+    /// Before the first step parameters and inputs may be set, afterwards inputs and tunable parameters. An importer
+    /// that integrates the unit may set continuous inputs and states in continuous time, and at an event also states
+    /// that do not jump (FMI 3.0.2, section 2.3.5).
+    #[inline]
+    fn require_settable(&self, reference: u32, variable: &Variable) -> Result<(), CallError> {
+        let is_initial = matches!(self.phase, Phase::Instantiated | Phase::InitializationMode);
+        let is_continuous_time = self.phase == Phase::ContinuousTimeMode;
+        let why = match (variable.causality, variable.variability) {
+            (Causality::Input, Variability::Continuous) => return Ok(()),
+            (Causality::Input, _) | (Causality::Parameter, Variability::Tunable) if !is_continuous_time => {
+                return Ok(());
+            }
+            (Causality::Input, _) => "a discrete input",
+            (Causality::Parameter, Variability::Tunable) => "a parameter",
+            (Causality::Parameter, _) if is_initial => return Ok(()),
+            (Causality::Parameter, _) => "a fixed parameter",
+            (Causality::Independent, _) => "the independent variable",
+            _ if self.rows.states().contains(&(reference as usize)) => match self.phase {
+                Phase::ContinuousTimeMode => return Ok(()),
+                Phase::EventMode if !variable.is_reinitialised => return Ok(()),
+                _ => "a continuous state",
+            },
+            _ => "calculated by the unit",
+        };
+        Err(CallError::NotSettable { name: variable.name, why, phase: self.phase.name() })
+    }
 }

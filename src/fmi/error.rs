@@ -14,6 +14,8 @@ pub enum CallError {
     NullPointer(&'static str),
     #[error("{argument} = {got}: expected {expected}, one value per value reference")]
     WrongLength { argument: &'static str, got: usize, expected: usize },
+    #[error("{argument} = {got}: expected {expected}")]
+    WrongCount { argument: &'static str, got: usize, expected: usize },
     #[error("value reference {reference} is unknown: expected 0 to {largest}")]
     UnknownReference { reference: u32, largest: usize },
     #[error("{name} (value reference {reference}) is {is}, not {asked}")]
@@ -28,6 +30,16 @@ pub enum CallError {
     TimeDoesNotFollow { got: f64, expected: f64 },
     #[error(transparent)]
     Unit(#[from] UnitError),
+    #[error("not a function of {0}, for which the instance was made")]
+    WrongInterface(&'static str),
+    #[error("{name} cannot be computed here: {value} {unit}")]
+    NotComputable { name: &'static str, value: f64, unit: &'static str },
+    #[error("{name} (value reference {reference}) is {is}: expected {expected}")]
+    WrongRole { name: &'static str, reference: u32, is: &'static str, expected: &'static str },
+    #[error("order {order} of the derivative of {name}: expected 1")]
+    WrongOrder { name: &'static str, order: i32 },
+    #[error("continuous state {0}")]
+    StateRejected(ValueError),
     #[error(transparent)]
     State(#[from] StateError),
     #[error("category number {0} is not declared in the model description: expected one of {categories}", categories = super::log::CategoryList)]
@@ -45,6 +57,8 @@ impl CallError {
             // "If a status is required which cannot be retrieved by the slave it returns fmi2Discard", FMI 2.0.5,
             // section 4.2.3.
             Self::NoSuchStatus(_) => Status::Discard,
+            // The solver may try a shorter step: FMI 3.0.2, section 3.2.1 (fmi3SetContinuousStates and the getters).
+            Self::StateRejected(_) | Self::NotComputable { .. } => Status::Discard,
             _ => Status::Error,
         }
     }

@@ -4,9 +4,9 @@ use core::ffi::CStr;
 use core::fmt;
 
 use super::saved_state::Life;
-use super::{CallError, Callback, CommunicationPoint, Function, Logger, Phase};
+use super::{CallError, Callback, CommunicationPoint, Function, Interface, Logger, Phase};
 use crate::unit::variable::Variable;
-use crate::unit::{Journal, TIME, Topic, UNITS, Unit};
+use crate::unit::{ContinuousRows, Journal, TIME, Topic, UNITS, Unit};
 
 /// What a handle (`fmi2Component`, `fmi3Instance`) points to.
 pub struct Instance {
@@ -14,26 +14,34 @@ pub struct Instance {
     /// The unit as made, for reset.
     template: Box<dyn Unit>,
     pub(super) variables: &'static [Variable],
+    /// Where the table holds what moves in continuous time.
+    pub(super) rows: ContinuousRows,
+    pub(super) interface: Interface,
     pub(super) phase: Phase,
     pub(super) logger: Logger,
     pub(super) communication: CommunicationPoint,
     start_time: f64,
     /// Whether a value was set since the calculated ones were last computed, before the first step.
     pub(super) is_stale: bool,
+    /// Whether a state or an input was set since what follows from them was last computed, after initialisation.
+    pub(super) needs_evaluation: bool,
 }
 
 impl Instance {
     /// An instance of any unit, not only of those the library knows by token.
-    pub fn new(unit: Box<dyn Unit>, logger: Logger) -> Self {
+    pub fn new(unit: Box<dyn Unit>, interface: Interface, logger: Logger) -> Self {
         Self {
             template: unit.boxed_clone(),
             variables: unit.description().variables,
+            rows: ContinuousRows::of(unit.description()),
             unit,
+            interface,
             phase: Phase::Instantiated,
             logger,
             communication: CommunicationPoint::new(0.0),
             start_time: 0.0,
             is_stale: true,
+            needs_evaluation: false,
         }
     }
 
@@ -83,10 +91,21 @@ impl Instance {
         Ok(())
     }
 
+    /// Computes what follows from states and inputs at this instant if one of them was set, after initialisation.
+    #[inline]
+    pub(super) fn evaluate(&mut self) {
+        if self.needs_evaluation {
+            if let Some(unit) = self.unit.continuous() {
+                unit.evaluate();
+            }
+            self.needs_evaluation = false;
+        }
+    }
+
     pub(super) fn exit_initialization_mode(&mut self) -> Result<(), CallError> {
         self.is_stale = true;
         self.refresh()?;
-        self.phase = Phase::StepMode;
+        self.phase = self.interface.first_phase();
         let (name, start_time) = (self.unit.description().name, self.start_time);
         self.note(format_args!("{name} initialised at t = {start_time} s"));
         Ok(())
@@ -97,6 +116,7 @@ impl Instance {
     pub(super) fn do_step(&mut self, point: f64, step_size: f64) -> Result<(), CallError> {
         let duration = self.communication.duration(point, step_size)?;
         self.unit.advance(duration, &mut self.logger)?;
+        self.needs_evaluation = false;
         self.communication.advance(point, step_size);
         self.unit.values_mut()[TIME] = self.communication.now();
         Ok(())
@@ -115,13 +135,14 @@ impl Instance {
         self.start_time = 0.0;
         self.communication = CommunicationPoint::new(0.0);
         self.is_stale = true;
+        self.needs_evaluation = false;
         self.note(format_args!("reset"));
         Ok(())
     }
 
     /// Whether the instance can get into `phase`.
     pub(super) fn reaches(&self, phase: Phase) -> bool {
-        matches!(phase, Phase::Instantiated | Phase::InitializationMode | Phase::StepMode | Phase::Terminated)
+        self.interface.reaches(phase)
     }
 
     /// What a saved state has to tell besides the unit.
@@ -137,6 +158,7 @@ impl Instance {
         self.communication = communication;
         self.start_time = start_time;
         self.is_stale = is_stale;
+        self.needs_evaluation = !is_stale;
     }
 
     pub(super) fn note(&mut self, message: fmt::Arguments<'_>) {
@@ -144,28 +166,36 @@ impl Instance {
     }
 }
 
-/// Makes an instance of the unit whose token is `token`, or logs why not. `refused_interface` names the interface
-/// type that was asked for when it is not the one on offer.
+/// Makes an instance of the unit whose token is `token` for an interface type, or logs why not. `interface` is the name
+/// of what was asked for if no unit offers it.
 pub(super) fn instantiate(
     function: &str,
     name: Option<&CStr>,
     token: Option<&CStr>,
     callback: Callback,
     logging_on: bool,
-    refused_interface: Option<&str>,
+    interface: Result<Interface, &str>,
 ) -> Option<Instance> {
     let logger = Logger::new(callback, name.unwrap_or_default().into(), logging_on);
-    if let Some(interface) = refused_interface {
-        logger.error(format_args!("{function}: {interface} is not offered, only co-simulation"));
-        return None;
-    }
+    let interface = match interface {
+        Ok(interface) => interface,
+        Err(asked) => {
+            logger.error(format_args!("{function}: {asked} is not offered"));
+            return None;
+        }
+    };
     let token = token.unwrap_or_default().to_str().unwrap_or_default();
     let Some(unit) = UNITS.iter().find(|unit| unit.description.token().as_str() == token) else {
         logger
             .error(format_args!("{function}: the token \"{token}\" is none of this library: {KnownTokens}"));
         return None;
     };
-    let mut instance = Instance::new((unit.create)(), logger);
+    if !interface.is_offered_by(unit.description) {
+        let (name, asked) = (unit.description.name, interface.name());
+        logger.error(format_args!("{function}: {name} does not offer {asked}, only co-simulation"));
+        return None;
+    }
+    let mut instance = Instance::new((unit.create)(), interface, logger);
     instance.note(format_args!("{} instantiated", unit.description.name));
     Some(instance)
 }

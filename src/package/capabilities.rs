@@ -21,6 +21,8 @@ pub struct Capabilities {
     pub provides_directional_derivatives: bool,
     /// The unit is only a link to a program that has to be installed.
     pub needs_execution_tool: bool,
+    /// Model exchange: the importer has to tell when a step of its integrator is accepted.
+    pub needs_completed_integrator_step: bool,
     /// FMI 3.0.
     pub provides_adjoint_derivatives: bool,
     /// FMI 3.0: dependencies can be asked for at run time.
@@ -56,6 +58,7 @@ const EVERY_UNIT: Capabilities = Capabilities {
     can_serialize_fmu_state: true,
     provides_directional_derivatives: false,
     needs_execution_tool: false,
+    needs_completed_integrator_step: false,
     provides_adjoint_derivatives: false,
     provides_per_element_dependencies: false,
     provides_intermediate_update: false,
@@ -66,9 +69,16 @@ const EVERY_UNIT: Capabilities = Capabilities {
 };
 
 /// Plants move in continuous time.
-const PLANT: Capabilities = Capabilities { ..EVERY_UNIT };
+const PLANT: Capabilities = Capabilities {
+    can_interpolate_inputs: true,
+    max_output_derivative_order: 1,
+    provides_directional_derivatives: true,
+    provides_adjoint_derivatives: true,
+    ..EVERY_UNIT
+};
 
-/// Controllers act at their ticks.
+/// Controllers act at their ticks. In between all outputs are held: at a communication point they depend on no input,
+/// as their empty dependencies say, and derivatives would all be zero.
 const CONTROLLER: Capabilities = Capabilities { ..EVERY_UNIT };
 
 // Flags that the standards allow only together with another.

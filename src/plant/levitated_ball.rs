@@ -47,8 +47,8 @@ impl State {
     }
 }
 
-/// What acts on the ball from outside and is held.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// What acts on the ball from outside and is held, or how fast it moves, each per second.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Drive {
     /// u \[V\]
     pub voltage: f64,
@@ -98,6 +98,27 @@ impl LevitatedBall {
         *state = State { position, velocity, flux };
     }
 
+    /// As [`Self::advance`] with a drive that starts from `drive` and moves with `slope` \[V/s, N/s\].
+    pub fn advance_under_ramp(
+        &self,
+        lower_stop: f64,
+        state: &mut State,
+        contact: &mut Contact,
+        drive: Drive,
+        slope: Drive,
+        duration: f64,
+    ) {
+        let ramped = RampedBall {
+            begin: DrivenBall::new(self, lower_stop, drive),
+            voltage_slope: slope.voltage,
+            acceleration_slope: slope.force / self.mass,
+        };
+        let mut components = [state.position, state.velocity, state.flux, 0.0];
+        advance(&ramped, &mut components, contact, duration, self.longest_substep(lower_stop));
+        let [position, velocity, flux, _] = components;
+        *state = State { position, velocity, flux };
+    }
+
     /// 0.1 ms, or a twentieth of the coil's shortest time constant k / (R (c - y)) if that is less \[s\]. The error of a step is
     /// then below 5e-12 of the distance of the flux from its steady value.
     pub fn longest_substep(&self, lower_stop: f64) -> f64 {
@@ -144,5 +165,32 @@ impl Guided<3> for DrivenBall {
 
     fn stops(&self) -> (f64, f64) {
         (self.lower_stop, self.gap)
+    }
+}
+
+/// The ball under a drive that moves along a straight line: the fourth state is the time since it began \[s\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct RampedBall {
+    begin: DrivenBall,
+    /// \[V/s\]
+    voltage_slope: f64,
+    /// Of the disturbing force per mass \[m/s3\].
+    acceleration_slope: f64,
+}
+
+impl Guided<4> for RampedBall {
+    #[inline(always)]
+    fn rate(&self, &[position, velocity, flux, time]: &[f64; 4]) -> [f64; 4] {
+        let [position_rate, velocity_rate, flux_rate] = self.begin.rate(&[position, velocity, flux]);
+        [
+            position_rate,
+            velocity_rate + self.acceleration_slope * time,
+            flux_rate + self.voltage_slope * time,
+            1.0,
+        ]
+    }
+
+    fn stops(&self) -> (f64, f64) {
+        self.begin.stops()
     }
 }

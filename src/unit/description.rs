@@ -30,6 +30,23 @@ impl Description {
         self.find("sample_time").is_some()
     }
 
+    /// Continuous states with their derivatives, as value references, in the order of the derivatives' rows.
+    pub fn continuous_states(&self) -> impl Iterator<Item = (usize, usize)> {
+        let rows = self.variables.iter().enumerate();
+        rows.filter_map(|(derivative, row)| Some((self.find(row.derivative_of?)?.0, derivative)))
+    }
+
+    /// Value references of the event indicators.
+    pub fn event_indicators(&self) -> impl Iterator<Item = usize> {
+        let rows = self.variables.iter().enumerate();
+        rows.filter(|(_, row)| row.is_event_indicator).map(|(reference, _)| reference)
+    }
+
+    /// Whether an importer may integrate the unit itself.
+    pub fn offers_model_exchange(&self) -> bool {
+        self.variables.iter().any(|row| row.derivative_of.is_some())
+    }
+
     /// Instantiation token (FMI 2: GUID), computed from the interface, so that a model description and a library
     /// that disagree about a variable cannot be loaded together.
     pub fn token(&self) -> Token {
@@ -48,6 +65,8 @@ impl Description {
                 }
             }
             hash.add_bytes(&[variable.causality as u8, variable.variability as u8]);
+            hash.add(variable.derivative_of.unwrap_or_default());
+            hash.add_bytes(&[variable.is_event_indicator.into(), variable.is_reinitialised.into()]);
             for number in [variable.start, variable.range.0, variable.range.1] {
                 hash.add_bytes(&number.to_bits().to_le_bytes());
             }

@@ -1,7 +1,9 @@
 //! What is exported: per unit its variable table, and how plant, observer and law are wired and sampled.
 //! Knows nothing of FMI.
 
+pub mod continuous;
 pub mod description;
+mod end_stop_events;
 mod levitated_ball;
 mod levitated_ball_controller;
 mod levitated_ball_plant;
@@ -20,6 +22,7 @@ pub mod variable;
 
 use core::fmt;
 
+pub use continuous::{ContinuousRows, ContinuousUnit};
 pub use description::{Description, Token};
 pub use levitated_ball_controller::LevitatedBallController;
 pub use levitated_ball_plant::LevitatedBallPlant;
@@ -60,6 +63,8 @@ impl Journal for Silence {
 /// Why a unit refused to run; it is left as it was before the call.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum UnitError {
+    #[error("an input with a slope leaves its range within the step: {0}")]
+    InputLeavesRange(value::ValueError),
     #[error("{name} would become {value} {unit} within the step: expected a finite number")]
     Diverged { name: &'static str, value: f64, unit: &'static str },
     #[error("{ticks} ticks within one step of {duration} s: expected at most {limit}")]
@@ -92,6 +97,11 @@ pub trait Unit: Persistent + Send {
 
     /// Lets `duration` \[s\], positive and finite, pass with the present inputs held.
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError>;
+
+    /// The unit as one that an importer may integrate, if it is.
+    fn continuous(&mut self) -> Option<&mut dyn ContinuousUnit> {
+        None
+    }
 
     /// Whether what the unit has computed from its parameters still belongs to them, once it is initialised. Asked of
     /// units read from bytes only, which anybody may have written; a unit answers for whatever could make it panic

@@ -8,6 +8,8 @@ use thiserror::Error;
 pub enum ValueError {
     #[error("{name} = {value} {unit}: expected a finite number")]
     NotFinite { name: &'static str, value: f64, unit: &'static str },
+    #[error("derivative of {name} = {value} {unit}/s: expected a finite number")]
+    SlopeNotFinite { name: &'static str, value: f64, unit: &'static str },
     #[error("{name} = {value} {unit}: expected {minimum} to {maximum} {unit}")]
     OutOfRange { name: &'static str, value: f64, unit: &'static str, minimum: f64, maximum: f64 },
     #[error("{name} = {value}: expected an item of {enumeration}, 1 to {count}")]

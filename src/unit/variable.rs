@@ -1,6 +1,6 @@
 //! One row of a unit's variable table, the single source for value access, model description and documentation.
 
-use super::quantity::{Enumeration, Quantity, TIME};
+use super::quantity::{Enumeration, Quantity, RATIO, TIME};
 
 /// FMI data type of a variable. Every value is stored as `f64`, which holds integers and enumerations exactly.
 #[derive(Clone, Copy, Debug)]
@@ -44,6 +44,52 @@ pub struct Variable {
     pub range: (f64, f64),
     /// Names of the variables from which the value at the end of initialisation follows.
     pub initially_from: &'static [&'static str],
+    /// Inputs, states and parameters from which the value follows at one instant, once initialisation is over.
+    pub depends_on: &'static [Dependency],
+    /// Name of the continuous state whose derivative with respect to time this is.
+    pub derivative_of: Option<&'static str>,
+    /// Whether a change of sign is an event that an importer who integrates the unit has to locate.
+    pub is_event_indicator: bool,
+    /// Whether this is a continuous state that may jump at an event.
+    pub is_reinitialised: bool,
+}
+
+/// How a known enters the equation of an unknown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DependencyKind {
+    /// Times a number that never changes.
+    Constant,
+    /// Times a number that follows from fixed parameters.
+    Fixed,
+    /// Times a number that changes at events and with parameters only.
+    Discrete,
+    /// In no particular way.
+    Dependent,
+}
+
+/// A known of an unknown.
+#[derive(Clone, Copy, Debug)]
+pub struct Dependency {
+    pub name: &'static str,
+    pub kind: DependencyKind,
+}
+
+impl Dependency {
+    pub const fn constant(name: &'static str) -> Self {
+        Self { name, kind: DependencyKind::Constant }
+    }
+
+    pub const fn fixed(name: &'static str) -> Self {
+        Self { name, kind: DependencyKind::Fixed }
+    }
+
+    pub const fn discrete(name: &'static str) -> Self {
+        Self { name, kind: DependencyKind::Discrete }
+    }
+
+    pub const fn dependent(name: &'static str) -> Self {
+        Self { name, kind: DependencyKind::Dependent }
+    }
 }
 
 impl Variable {
@@ -57,6 +103,10 @@ impl Variable {
             start: 0.0,
             range: (f64::NEG_INFINITY, f64::INFINITY),
             initially_from: &[],
+            depends_on: &[],
+            derivative_of: None,
+            is_event_indicator: false,
+            is_reinitialised: false,
         }
     }
 
@@ -118,6 +168,30 @@ impl Variable {
 
     pub const fn initially_from(mut self, names: &'static [&'static str]) -> Self {
         self.initially_from = names;
+        self
+    }
+
+    pub const fn depends_on(mut self, dependencies: &'static [Dependency]) -> Self {
+        self.depends_on = dependencies;
+        self
+    }
+
+    /// Derivative with respect to time of the continuous state called `state`.
+    pub const fn derivative_of(mut self, state: &'static str) -> Self {
+        self.derivative_of = Some(state);
+        self
+    }
+
+    /// Quantity whose change of sign is an event, about 1 in size and never 0 after an event.
+    pub const fn event_indicator(name: &'static str) -> Self {
+        let mut variable = Self::local(name, Kind::Real(&RATIO), Variability::Continuous);
+        variable.is_event_indicator = true;
+        variable
+    }
+
+    /// A continuous state that may jump at an event.
+    pub const fn reinitialised(mut self) -> Self {
+        self.is_reinitialised = true;
         self
     }
 

@@ -10,7 +10,7 @@ use maglev_fmu::fmi::fmi2::types::{
 use maglev_fmu::fmi::fmi2::*;
 
 use super::harness::OK;
-use super::life_cycle::Outcome::{self, Discards, NotOffered, Refuses, Works};
+use super::life_cycle::Outcome::{self, Discards, NotOffered, PlantsOnly, Refuses, Works};
 use super::life_cycle::Row;
 
 /// One reference of each type that both units have: the time, a real.
@@ -59,9 +59,9 @@ pub fn table() -> Vec<Row> {
         row("fmi2SerializedFMUstateSize", "xxxx", Refuses("FMUState is a null pointer"), |c| unsafe { fmi2SerializedFMUstateSize(c, null_mut(), &mut 0) }),
         row("fmi2SerializeFMUstate", "xxxx", Refuses("FMUState is a null pointer"), |c| unsafe { fmi2SerializeFMUstate(c, null_mut(), null_mut(), 0) }),
         row("fmi2DeSerializeFMUstate", "xxxx", Refuses("0 bytes: expected"), |c| unsafe { fmi2DeSerializeFMUstate(c, null(), 0, &mut null_mut()) }),
-        row("fmi2GetDirectionalDerivative", ".xxx", NotOffered, |c| unsafe { fmi2GetDirectionalDerivative(c, null(), 0, null(), 0, null(), null_mut()) }),
-        row("fmi2SetRealInputDerivatives", "xxx.", NotOffered, |c| unsafe { fmi2SetRealInputDerivatives(c, null(), 0, null(), null()) }),
-        row("fmi2GetRealOutputDerivatives", "..xx", NotOffered, |c| unsafe { fmi2GetRealOutputDerivatives(c, null(), 0, null(), null_mut()) }),
+        row("fmi2GetDirectionalDerivative", ".xxx", PlantsOnly, |c| unsafe { fmi2GetDirectionalDerivative(c, null(), 0, null(), 0, null(), null_mut()) }),
+        row("fmi2SetRealInputDerivatives", "xxx.", PlantsOnly, |c| unsafe { fmi2SetRealInputDerivatives(c, null(), 0, null(), null()) }),
+        row("fmi2GetRealOutputDerivatives", "..xx", PlantsOnly, |c| unsafe { fmi2GetRealOutputDerivatives(c, null(), 0, null(), null_mut()) }),
         row("fmi2DoStep", "..x.", Works, |c| unsafe { fmi2DoStep(c, 0.005, 0.001, 1) }),
         row("fmi2CancelStep", "....", NotOffered, |c| unsafe { fmi2CancelStep(c) }),
         row("fmi2GetStatus", "..xx", Works, |c| unsafe { fmi2GetStatus(c, FMI2_DO_STEP_STATUS, &mut 0) }),

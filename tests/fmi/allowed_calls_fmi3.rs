@@ -7,7 +7,7 @@ use core::ptr::{null, null_mut};
 use maglev_fmu::fmi::fmi3::*;
 
 use super::harness::OK;
-use super::life_cycle::Outcome::{self, NotOffered, Refuses, Works};
+use super::life_cycle::Outcome::{self, NotOffered, PlantsOnly, Refuses, Works};
 use super::life_cycle::Row;
 
 /// The time, a Float64 of both units.
@@ -78,8 +78,8 @@ pub fn table() -> Vec<Row> {
         row("fmi3SerializedFMUStateSize", "xxxx", Refuses("FMUState is a null pointer"), |c| unsafe { fmi3SerializedFMUStateSize(c, null_mut(), &mut 0) }),
         row("fmi3SerializeFMUState", "xxxx", Refuses("FMUState is a null pointer"), |c| unsafe { fmi3SerializeFMUState(c, null_mut(), null_mut(), 0) }),
         row("fmi3DeserializeFMUState", "xxxx", Refuses("0 bytes: expected"), |c| unsafe { fmi3DeserializeFMUState(c, null(), 0, &mut null_mut()) }),
-        row("fmi3GetDirectionalDerivative", ".xxx", NotOffered, |c| unsafe { fmi3GetDirectionalDerivative(c, null(), 0, null(), 0, null(), 0, null_mut(), 0) }),
-        row("fmi3GetAdjointDerivative", ".xxx", NotOffered, |c| unsafe { fmi3GetAdjointDerivative(c, null(), 0, null(), 0, null(), 0, null_mut(), 0) }),
+        row("fmi3GetDirectionalDerivative", ".xxx", PlantsOnly, |c| unsafe { fmi3GetDirectionalDerivative(c, null(), 0, null(), 0, null(), 0, null_mut(), 0) }),
+        row("fmi3GetAdjointDerivative", ".xxx", PlantsOnly, |c| unsafe { fmi3GetAdjointDerivative(c, null(), 0, null(), 0, null(), 0, null_mut(), 0) }),
         row("fmi3EnterConfigurationMode", "x.x.", NotOffered, |c| unsafe { fmi3EnterConfigurationMode(c) }),
         row("fmi3ExitConfigurationMode", "....", NotOffered, |c| unsafe { fmi3ExitConfigurationMode(c) }),
         row("fmi3GetIntervalDecimal", ".x..", NotOffered, |c| unsafe { fmi3GetIntervalDecimal(c, null(), 0, null_mut(), null_mut()) }),
@@ -93,7 +93,7 @@ pub fn table() -> Vec<Row> {
         row("fmi3EvaluateDiscreteStates", "....", NotOffered, |c| unsafe { fmi3EvaluateDiscreteStates(c) }),
         row("fmi3UpdateDiscreteStates", "....", NotOffered, |c| unsafe { fmi3UpdateDiscreteStates(c, &mut 0, &mut 0, &mut 0, &mut 0, &mut 0, &mut 0.0) }),
         row("fmi3EnterStepMode", "....", NotOffered, |c| unsafe { fmi3EnterStepMode(c) }),
-        row("fmi3GetOutputDerivatives", "..xx", NotOffered, |c| unsafe { fmi3GetOutputDerivatives(c, null(), 0, null(), null_mut(), 0) }),
+        row("fmi3GetOutputDerivatives", "..xx", PlantsOnly, |c| unsafe { fmi3GetOutputDerivatives(c, null(), 0, null(), null_mut(), 0) }),
         row("fmi3DoStep", "..x.", Works, |c| unsafe { fmi3DoStep(c, 0.005, 0.001, 1, &mut 0, &mut 0, &mut 0, &mut 0.0) }),
         // Model exchange or scheduled execution only.
         row("fmi3EnterContinuousTimeMode", "----", NotOffered, |c| unsafe { fmi3EnterContinuousTimeMode(c) }),

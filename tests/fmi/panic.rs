@@ -1,6 +1,6 @@
 //! A defect inside a unit stays inside the instance.
 
-use maglev_fmu::fmi::{Callback, Instance, Logger};
+use maglev_fmu::fmi::{Callback, Instance, Interface, Logger};
 use maglev_fmu::unit::{Description, Journal, MagneticBearingPlant, Unit, UnitError};
 use serde::{Deserialize, Serialize};
 
@@ -48,7 +48,7 @@ fn defective(standard: Standard, logging_on: bool) -> Component {
     };
     let logger = Logger::new(callback, c"defective".into(), logging_on);
     let unit = Box::new(Defective { plant: MagneticBearingPlant::new(), steps: 0 });
-    let handle = Box::into_raw(Box::new(Instance::new(unit, logger))).cast();
+    let handle = Box::into_raw(Box::new(Instance::new(unit, Interface::CoSimulation, logger))).cast();
     Component::from_handle(standard, PLANT, handle, recorder)
 }
 

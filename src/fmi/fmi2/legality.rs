@@ -23,7 +23,7 @@ const READABLE: &[Phase] =
 const WRITABLE: &[Phase] = &[Instantiated, InitializationMode, EventMode, ContinuousTimeMode, StepMode];
 const WRITABLE_DISCRETE: &[Phase] = &[Instantiated, InitializationMode, EventMode, StepMode];
 const STATUS: &[Phase] = &[StepMode, StepInProgress, StepFailed, Terminated];
-const EVALUABLE: &[Phase] = &[EventMode, ContinuousTimeMode, Terminated];
+const EVALUABLE: &[Phase] = &[InitializationMode, EventMode, ContinuousTimeMode, Terminated];
 
 pub const SET_DEBUG_LOGGING: Function = Function::new(
     "fmi2SetDebugLogging",
@@ -67,18 +67,15 @@ pub const NEW_DISCRETE_STATES: Function = Function::new("fmi2NewDiscreteStates",
 pub const ENTER_CONTINUOUS_TIME_MODE: Function = Function::new("fmi2EnterContinuousTimeMode", &[EventMode]);
 pub const COMPLETED_INTEGRATOR_STEP: Function =
     Function::new("fmi2CompletedIntegratorStep", &[ContinuousTimeMode]);
-pub const SET_TIME: Function = Function::new("fmi2SetTime", &[EventMode, ContinuousTimeMode]);
+/// In event mode for pure discrete-time units only (condition 8), which no unit is.
+pub const SET_TIME: Function = Function::new("fmi2SetTime", &[ContinuousTimeMode]);
 pub const SET_CONTINUOUS_STATES: Function = Function::new("fmi2SetContinuousStates", &[ContinuousTimeMode]);
 pub const GET_DERIVATIVES: Function = Function::new("fmi2GetDerivatives", EVALUABLE);
-pub const GET_EVENT_INDICATORS: Function =
-    Function::new("fmi2GetEventIndicators", &[InitializationMode, EventMode, ContinuousTimeMode, Terminated]);
-pub const GET_CONTINUOUS_STATES: Function = Function::new(
-    "fmi2GetContinuousStates",
-    &[InitializationMode, EventMode, ContinuousTimeMode, Terminated],
-);
+pub const GET_EVENT_INDICATORS: Function = Function::new("fmi2GetEventIndicators", EVALUABLE);
+pub const GET_CONTINUOUS_STATES: Function = Function::new("fmi2GetContinuousStates", EVALUABLE);
 pub const GET_NOMINALS_OF_CONTINUOUS_STATES: Function = Function::new(
     "fmi2GetNominalsOfContinuousStates",
-    &[Instantiated, EventMode, ContinuousTimeMode, Terminated],
+    &[Instantiated, InitializationMode, EventMode, ContinuousTimeMode, Terminated],
 );
 
 pub const SET_REAL_INPUT_DERIVATIVES: Function =

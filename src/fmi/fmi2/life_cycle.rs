@@ -5,6 +5,7 @@ use core::ffi::c_char;
 
 use super::legality as may;
 use super::types::*;
+use crate::fmi::Interface;
 use crate::fmi::boundary::{create, enter, free, input};
 use crate::fmi::instance::instantiate;
 use crate::fmi::log::{Callback, c_string, set_debug_logging};
@@ -63,14 +64,14 @@ pub unsafe extern "C" fn fmi2Instantiate(
     let callback = unsafe { functions.as_ref() }
         .and_then(|functions| Some(Callback::Fmi2(functions.logger?, functions.component_environment)))
         .unwrap_or(Callback::None);
-    let refusal = match fmu_type {
-        FMI2_CO_SIMULATION => None,
-        FMI2_MODEL_EXCHANGE => Some("model exchange"),
-        _ => Some("an unknown fmi2Type"),
+    let interface = match fmu_type {
+        FMI2_CO_SIMULATION => Ok(Interface::CoSimulation),
+        FMI2_MODEL_EXCHANGE => Ok(Interface::ModelExchange),
+        _ => Err("an unknown fmi2Type"),
     };
     // SAFETY: the caller's promise.
     let (name, token) = unsafe { (c_string(instance_name), c_string(guid)) };
-    create(|| instantiate("fmi2Instantiate", name, token, callback, logging_on != FMI2_FALSE, refusal))
+    create(|| instantiate("fmi2Instantiate", name, token, callback, logging_on != FMI2_FALSE, interface))
 }
 
 /// Frees an instance; null is ignored.

@@ -126,7 +126,7 @@ pub const UPDATE_DISCRETE_STATES: Function = Function::new("fmi3UpdateDiscreteSt
 pub const ENTER_CONTINUOUS_TIME_MODE: Function = Function::new("fmi3EnterContinuousTimeMode", &[EventMode]);
 pub const COMPLETED_INTEGRATOR_STEP: Function =
     Function::new("fmi3CompletedIntegratorStep", &[ContinuousTimeMode]);
-pub const SET_TIME: Function = Function::new("fmi3SetTime", &[EventMode, ContinuousTimeMode]);
+pub const SET_TIME: Function = Function::new("fmi3SetTime", &[ContinuousTimeMode]);
 pub const SET_CONTINUOUS_STATES: Function = Function::new("fmi3SetContinuousStates", &[ContinuousTimeMode]);
 pub const GET_CONTINUOUS_STATE_DERIVATIVES: Function =
     Function::new("fmi3GetContinuousStateDerivatives", EVALUABLE);

@@ -5,6 +5,7 @@ use core::ffi::c_char;
 
 use super::legality as may;
 use super::types::*;
+use crate::fmi::Interface;
 use crate::fmi::boundary::{create, enter, free, input};
 use crate::fmi::instance::instantiate;
 use crate::fmi::log::{Callback, c_string, set_debug_logging};
@@ -57,15 +58,17 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
     log_message: Option<fmi3LogMessageCallback>,
     _intermediate_update: Option<fmi3IntermediateUpdateCallback>,
 ) -> fmi3Instance {
-    let refusal = (event_mode_used != FMI3_FALSE).then_some("event mode");
+    let interface =
+        if event_mode_used == FMI3_FALSE { Ok(Interface::CoSimulation) } else { Err("event mode") };
     // SAFETY: the caller's promise.
     let (name, token) = unsafe { (c_string(instance_name), c_string(token)) };
     let callback = callback(log_message, environment);
     let function = "fmi3InstantiateCoSimulation";
-    create(|| instantiate(function, name, token, callback, logging_on != FMI3_FALSE, refusal))
+    create(|| instantiate(function, name, token, callback, logging_on != FMI3_FALSE, interface))
 }
 
-/// Not offered: returns null and logs why.
+/// Makes a model-exchange instance of the unit that `token` selects; null and a log message if there is none or if it
+/// is a sampled one.
 ///
 /// # Safety
 /// As [`fmi3InstantiateCoSimulation`].
@@ -83,7 +86,9 @@ pub unsafe extern "C" fn fmi3InstantiateModelExchange(
     let (name, token) = unsafe { (c_string(instance_name), c_string(token)) };
     let callback = callback(log_message, environment);
     let function = "fmi3InstantiateModelExchange";
-    create(|| instantiate(function, name, token, callback, logging_on != FMI3_FALSE, Some("model exchange")))
+    create(|| {
+        instantiate(function, name, token, callback, logging_on != FMI3_FALSE, Ok(Interface::ModelExchange))
+    })
 }
 
 /// Not offered: returns null and logs why.
@@ -108,7 +113,7 @@ pub unsafe extern "C" fn fmi3InstantiateScheduledExecution(
     let callback = callback(log_message, environment);
     let function = "fmi3InstantiateScheduledExecution";
     create(|| {
-        instantiate(function, name, token, callback, logging_on != FMI3_FALSE, Some("scheduled execution"))
+        instantiate(function, name, token, callback, logging_on != FMI3_FALSE, Err("scheduled execution"))
     })
 }
 

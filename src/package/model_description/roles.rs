@@ -1,7 +1,7 @@
 //! What the standards derive from a variable's causality and variability.
 
 use crate::unit::Description;
-use crate::unit::variable::{Causality, Kind, Variability, Variable};
+use crate::unit::variable::{Causality, DependencyKind, Kind, Variability, Variable};
 
 /// The attribute `causality`.
 pub fn causality(variable: &Variable) -> &'static str {
@@ -61,27 +61,79 @@ pub fn outputs(description: &Description) -> impl Iterator<Item = usize> {
     description.variables.iter().enumerate().filter(move |(_, row)| is_output(row)).map(|(index, _)| index)
 }
 
-/// Value references of all outputs and calculated parameters, which are unknown until the unit is initialised,
-/// each with those of the variables it follows from, in ascending order. Local variables are not listed unless
-/// they are continuous states or derivatives, which these units do not expose.
-pub fn initial_unknowns(description: &Description) -> impl Iterator<Item = (usize, Vec<usize>)> {
-    let is_unknown =
-        |row: &Variable| matches!(row.causality, Causality::Output | Causality::CalculatedParameter);
-    let variables = description.variables.iter().enumerate();
-    variables.filter(move |(_, variable)| is_unknown(variable)).map(|(index, variable)| {
+/// Value references of the derivatives of all continuous states; their order is that of the state vector.
+pub fn derivatives(description: &Description) -> impl Iterator<Item = usize> {
+    description.continuous_states().map(|(_, derivative)| derivative)
+}
+
+/// Value reference of the state whose derivative the variable is.
+pub fn derivative_of(description: &Description, variable: &Variable) -> Option<usize> {
+    description.find(variable.derivative_of?).map(|(state, _)| state)
+}
+
+/// The attribute `reinit` of a continuous state that may jump.
+pub fn reinit(variable: &Variable) -> Option<bool> {
+    variable.is_reinitialised.then_some(true)
+}
+
+/// What an unknown depends on: value references in ascending order, and how each enters.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Dependencies {
+    pub references: Vec<usize>,
+    pub kinds: Vec<&'static str>,
+}
+
+impl Dependencies {
+    fn new(mut entries: Vec<(usize, &'static str)>) -> Self {
+        entries.sort_unstable();
+        let (references, kinds) = entries.into_iter().unzip();
+        Self { references, kinds }
+    }
+
+    /// What the variable follows from at one instant after initialisation. Parameters are knowns of FMI 3.0 only.
+    pub fn at_an_instant(description: &Description, reference: usize, with_parameters: bool) -> Self {
+        let dependencies = description.variables[reference].depends_on.iter();
+        let entries = dependencies.filter_map(|dependency| {
+            let (known, row) = description.find(dependency.name)?;
+            let kind = match dependency.kind {
+                DependencyKind::Constant => "constant",
+                DependencyKind::Fixed => "fixed",
+                DependencyKind::Discrete => "discrete",
+                DependencyKind::Dependent => "dependent",
+            };
+            (with_parameters || row.causality != Causality::Parameter).then_some((known, kind))
+        });
+        Self::new(entries.collect())
+    }
+
+    /// What the variable follows from in initialisation mode.
+    fn initial(description: &Description, variable: &Variable) -> Self {
         let sources = variable.initially_from.iter().filter_map(|name| description.find(name));
-        let mut references: Vec<usize> = sources.map(|(reference, _)| reference).collect();
-        references.sort_unstable();
-        (index, references)
-    })
+        Self::new(sources.map(|(reference, _)| (reference, "dependent")).collect())
+    }
+
+    /// The attribute `dependencies`, counted from `offset`.
+    pub fn list(&self, offset: usize) -> String {
+        let numbers: Vec<String> =
+            self.references.iter().map(|reference| (reference + offset).to_string()).collect();
+        numbers.join(" ")
+    }
+
+    /// The attribute `dependenciesKind`.
+    pub fn kind_list(&self) -> Option<String> {
+        (!self.kinds.is_empty()).then(|| self.kinds.join(" "))
+    }
 }
 
-/// A list in an attribute.
-pub fn joined(references: &[usize]) -> String {
-    references.iter().map(usize::to_string).collect::<Vec<_>>().join(" ")
-}
-
-/// The attribute `dependenciesKind` for `count` dependencies without particular structure.
-pub fn dependencies_kind(count: usize) -> Option<String> {
-    (count > 0).then(|| vec!["dependent"; count].join(" "))
+/// Value references of all outputs, calculated parameters, continuous states and derivatives, which are unknown until
+/// the unit is initialised, with what each follows from. Other local variables are not listed.
+pub fn initial_unknowns(description: &Description) -> impl Iterator<Item = (usize, Dependencies)> {
+    let is_state = |index| description.continuous_states().any(|(state, _)| state == index);
+    let variables = description.variables.iter().enumerate();
+    let unknowns = variables.filter(move |(index, row)| {
+        matches!(row.causality, Causality::Output | Causality::CalculatedParameter)
+            || row.derivative_of.is_some()
+            || is_state(*index)
+    });
+    unknowns.map(|(index, variable)| (index, Dependencies::initial(description, variable)))
 }

@@ -4,7 +4,7 @@ use maglev_fmu::fmi::fmi2::*;
 use maglev_fmu::fmi::fmi3::*;
 use maglev_fmu::unit::variable::{Kind, Variable};
 
-use super::{Component, ERROR, OK, Phase, Standard};
+use super::{Component, DISCARD, ERROR, OK, Phase, Standard};
 
 impl Component {
     pub fn reference(&self, name: &str) -> u32 {
@@ -99,12 +99,13 @@ impl Component {
         }
     }
 
-    /// All values as bits, empty where the standard does not let them be read.
+    /// All values as bits, empty where the standard does not let them be read or one of them cannot be
+    /// computed.
     pub fn snapshot(&self) -> Vec<u64> {
         let mut values = Vec::new();
         for reference in 0..self.description.variables.len() as u32 {
             let (status, value) = self.get_reference(reference);
-            if status == ERROR {
+            if status == ERROR || status == DISCARD {
                 self.recorder.take();
                 return Vec::new();
             }

@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each test binary uses a part")]
 
 mod access;
+mod exchange;
 mod instantiate;
 mod recorder;
 mod state;
@@ -16,6 +17,8 @@ use maglev_fmu::fmi::fmi3::*;
 use maglev_fmu::unit::variable::Causality;
 use maglev_fmu::unit::{Description, UNITS};
 
+#[allow(unused_imports, reason = "each test binary uses a part")]
+pub use exchange::plants;
 pub use instantiate::{instantiate, instantiate_with};
 pub use recorder::{Message, Recorder, fmi2_logger, fmi3_logger};
 pub use state::State;
@@ -197,7 +200,7 @@ impl Component {
         }
     }
 
-    fn plain(
+    pub fn plain(
         &self,
         fmi2: unsafe extern "C" fn(*mut c_void) -> i32,
         fmi3: unsafe extern "C" fn(*mut c_void) -> i32,

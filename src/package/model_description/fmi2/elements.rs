@@ -26,6 +26,10 @@ pub struct ModelDescription {
     pub generation_time: Option<String>,
     #[serde(rename = "@variableNamingConvention")]
     pub variable_naming_convention: &'static str,
+    #[serde(rename = "@numberOfEventIndicators", skip_serializing_if = "Option::is_none")]
+    pub number_of_event_indicators: Option<usize>,
+    #[serde(rename = "ModelExchange", skip_serializing_if = "Option::is_none")]
+    pub model_exchange: Option<ModelExchange>,
     #[serde(rename = "CoSimulation")]
     pub co_simulation: CoSimulation,
     #[serde(rename = "UnitDefinitions")]
@@ -40,6 +44,26 @@ pub struct ModelDescription {
     pub model_variables: ModelVariables,
     #[serde(rename = "ModelStructure")]
     pub model_structure: ModelStructure,
+}
+
+#[derive(Serialize)]
+pub struct ModelExchange {
+    #[serde(rename = "@modelIdentifier")]
+    pub model_identifier: &'static str,
+    #[serde(rename = "@needsExecutionTool")]
+    pub needs_execution_tool: bool,
+    #[serde(rename = "@completedIntegratorStepNotNeeded")]
+    pub completed_integrator_step_not_needed: bool,
+    #[serde(rename = "@canBeInstantiatedOnlyOncePerProcess")]
+    pub can_be_instantiated_only_once_per_process: bool,
+    #[serde(rename = "@canNotUseMemoryManagementFunctions")]
+    pub can_not_use_memory_management_functions: bool,
+    #[serde(rename = "@canGetAndSetFMUstate")]
+    pub can_get_and_set_fmu_state: bool,
+    #[serde(rename = "@canSerializeFMUstate")]
+    pub can_serialize_fmu_state: bool,
+    #[serde(rename = "@providesDirectionalDerivative")]
+    pub provides_directional_derivative: bool,
 }
 
 #[derive(Serialize)]
@@ -148,12 +172,19 @@ pub struct ValueAttributes {
     pub maximum: Option<String>,
     #[serde(rename = "@start", skip_serializing_if = "Option::is_none")]
     pub start: Option<String>,
+    /// Position of the state whose derivative this is in the list of variables, counted from 1.
+    #[serde(rename = "@derivative", skip_serializing_if = "Option::is_none")]
+    pub derivative: Option<usize>,
+    #[serde(rename = "@reinit", skip_serializing_if = "Option::is_none")]
+    pub reinit: Option<bool>,
 }
 
 #[derive(Serialize)]
 pub struct ModelStructure {
     #[serde(rename = "Outputs")]
     pub outputs: Unknowns,
+    #[serde(rename = "Derivatives", skip_serializing_if = "Option::is_none")]
+    pub derivatives: Option<Unknowns>,
     #[serde(rename = "InitialUnknowns")]
     pub initial_unknowns: Unknowns,
 }

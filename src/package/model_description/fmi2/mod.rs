@@ -4,8 +4,8 @@ mod elements;
 
 pub use elements::ModelDescription;
 use elements::{
-    CoSimulation, Definition, ModelStructure, ModelVariables, ScalarVariable, SimpleType, TypeDefinitions,
-    Unknown, Unknowns, Value, ValueAttributes,
+    CoSimulation, Definition, ModelExchange, ModelStructure, ModelVariables, ScalarVariable, SimpleType,
+    TypeDefinitions, Unknown, Unknowns, Value, ValueAttributes,
 };
 
 use super::common::{
@@ -31,6 +31,10 @@ impl ModelDescription {
             generation_tool: GENERATION_TOOL,
             generation_time: time.map(|time| time.to_string()),
             variable_naming_convention: "structured",
+            number_of_event_indicators: description
+                .offers_model_exchange()
+                .then(|| description.event_indicators().count()),
+            model_exchange: description.offers_model_exchange().then(|| ModelExchange::new(description)),
             co_simulation: CoSimulation::new(description),
             unit_definitions: UnitDefinitions::new(description),
             type_definitions: TypeDefinitions::new(description),
@@ -38,10 +42,26 @@ impl ModelDescription {
             default_experiment: DefaultExperiment::new(description),
             model_variables: ModelVariables {
                 variables: variables
-                    .map(|(reference, variable)| ScalarVariable::new(reference, variable))
+                    .map(|(reference, variable)| ScalarVariable::new(description, reference, variable))
                     .collect(),
             },
             model_structure: ModelStructure::new(description),
+        }
+    }
+}
+
+impl ModelExchange {
+    fn new(description: &Description) -> Self {
+        let can = Capabilities::of(description);
+        Self {
+            model_identifier: description.name,
+            needs_execution_tool: can.needs_execution_tool,
+            completed_integrator_step_not_needed: !can.needs_completed_integrator_step,
+            can_be_instantiated_only_once_per_process: can.can_be_instantiated_only_once_per_process,
+            can_not_use_memory_management_functions: can.can_not_use_memory_management_functions,
+            can_get_and_set_fmu_state: can.can_get_and_set_fmu_state,
+            can_serialize_fmu_state: can.can_serialize_fmu_state,
+            provides_directional_derivative: can.provides_directional_derivatives,
         }
     }
 }
@@ -87,11 +107,18 @@ impl TypeDefinitions {
 }
 
 impl ScalarVariable {
-    fn new(value_reference: usize, variable: &Variable) -> Self {
+    fn new(description: &Description, value_reference: usize, variable: &Variable) -> Self {
         let [minimum, maximum] = roles::range(variable);
         let start = roles::start(variable);
-        let attributes =
-            |declared_type, unit| ValueAttributes { declared_type, unit, minimum, maximum, start };
+        let attributes = |declared_type, unit| ValueAttributes {
+            declared_type,
+            unit,
+            minimum,
+            maximum,
+            start,
+            derivative: roles::derivative_of(description, variable).map(|state| state + 1),
+            reinit: roles::reinit(variable),
+        };
         Self {
             name: variable.name,
             value_reference,
@@ -115,19 +142,21 @@ impl ScalarVariable {
 
 impl ModelStructure {
     fn new(description: &Description) -> Self {
-        let unknown = |reference: usize, dependencies: &[usize]| Unknown {
+        let unknown = |reference: usize, dependencies: roles::Dependencies| Unknown {
             index: reference + 1,
-            dependencies: roles::joined(&dependencies.iter().map(|known| known + 1).collect::<Vec<_>>()),
-            dependencies_kind: roles::dependencies_kind(dependencies.len()),
+            dependencies: dependencies.list(1),
+            dependencies_kind: dependencies.kind_list(),
         };
+        let at_an_instant =
+            |reference| unknown(reference, roles::Dependencies::at_an_instant(description, reference, false));
         Self {
-            // Outputs change in a step only: at a communication point they depend on nothing.
-            outputs: Unknowns {
-                unknowns: roles::outputs(description).map(|reference| unknown(reference, &[])).collect(),
-            },
+            outputs: Unknowns { unknowns: roles::outputs(description).map(at_an_instant).collect() },
+            derivatives: description
+                .offers_model_exchange()
+                .then(|| Unknowns { unknowns: roles::derivatives(description).map(at_an_instant).collect() }),
             initial_unknowns: Unknowns {
                 unknowns: roles::initial_unknowns(description)
-                    .map(|(reference, dependencies)| unknown(reference, &dependencies))
+                    .map(|(reference, dependencies)| unknown(reference, dependencies))
                     .collect(),
             },
         }

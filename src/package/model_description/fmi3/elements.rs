@@ -26,6 +26,8 @@ pub struct ModelDescription {
     pub generation_time: Option<String>,
     #[serde(rename = "@variableNamingConvention")]
     pub variable_naming_convention: &'static str,
+    #[serde(rename = "ModelExchange", skip_serializing_if = "Option::is_none")]
+    pub model_exchange: Option<ModelExchange>,
     #[serde(rename = "CoSimulation")]
     pub co_simulation: CoSimulation,
     #[serde(rename = "UnitDefinitions")]
@@ -40,6 +42,30 @@ pub struct ModelDescription {
     pub model_variables: ModelVariables,
     #[serde(rename = "ModelStructure")]
     pub model_structure: ModelStructure,
+}
+
+#[derive(Serialize)]
+pub struct ModelExchange {
+    #[serde(rename = "@modelIdentifier")]
+    pub model_identifier: &'static str,
+    #[serde(rename = "@needsExecutionTool")]
+    pub needs_execution_tool: bool,
+    #[serde(rename = "@canBeInstantiatedOnlyOncePerProcess")]
+    pub can_be_instantiated_only_once_per_process: bool,
+    #[serde(rename = "@canGetAndSetFMUState")]
+    pub can_get_and_set_fmu_state: bool,
+    #[serde(rename = "@canSerializeFMUState")]
+    pub can_serialize_fmu_state: bool,
+    #[serde(rename = "@providesDirectionalDerivatives")]
+    pub provides_directional_derivatives: bool,
+    #[serde(rename = "@providesAdjointDerivatives")]
+    pub provides_adjoint_derivatives: bool,
+    #[serde(rename = "@providesPerElementDependencies")]
+    pub provides_per_element_dependencies: bool,
+    #[serde(rename = "@needsCompletedIntegratorStep")]
+    pub needs_completed_integrator_step: bool,
+    #[serde(rename = "@providesEvaluateDiscreteStates")]
+    pub provides_evaluate_discrete_states: bool,
 }
 
 #[derive(Serialize)]
@@ -146,14 +172,23 @@ pub struct VariableAttributes {
     pub maximum: Option<String>,
     #[serde(rename = "@start", skip_serializing_if = "Option::is_none")]
     pub start: Option<String>,
+    /// Value reference of the state whose derivative this is.
+    #[serde(rename = "@derivative", skip_serializing_if = "Option::is_none")]
+    pub derivative: Option<usize>,
+    #[serde(rename = "@reinit", skip_serializing_if = "Option::is_none")]
+    pub reinit: Option<bool>,
 }
 
 #[derive(Serialize)]
 pub struct ModelStructure {
     #[serde(rename = "Output")]
     pub outputs: Vec<Unknown>,
+    #[serde(rename = "ContinuousStateDerivative")]
+    pub derivatives: Vec<Unknown>,
     #[serde(rename = "InitialUnknown")]
     pub initial_unknowns: Vec<Unknown>,
+    #[serde(rename = "EventIndicator")]
+    pub event_indicators: Vec<Unknown>,
 }
 
 #[derive(Serialize)]

@@ -4,8 +4,8 @@ mod elements;
 
 pub use elements::ModelDescription;
 use elements::{
-    CoSimulation, ModelStructure, ModelVariables, Type, TypeDefinitions, TypedVariable, Unknown,
-    VariableAttributes,
+    CoSimulation, ModelExchange, ModelStructure, ModelVariables, Type, TypeDefinitions, TypedVariable,
+    Unknown, VariableAttributes,
 };
 
 use super::common::{
@@ -31,6 +31,7 @@ impl ModelDescription {
             generation_tool: GENERATION_TOOL,
             generation_time: time.map(|time| time.to_string()),
             variable_naming_convention: "structured",
+            model_exchange: description.offers_model_exchange().then(|| ModelExchange::new(description)),
             co_simulation: CoSimulation::new(description),
             unit_definitions: UnitDefinitions::new(description),
             type_definitions: TypeDefinitions::new(description),
@@ -38,10 +39,28 @@ impl ModelDescription {
             default_experiment: DefaultExperiment::new(description),
             model_variables: ModelVariables {
                 variables: variables
-                    .map(|(reference, variable)| TypedVariable::new(reference, variable))
+                    .map(|(reference, variable)| TypedVariable::new(description, reference, variable))
                     .collect(),
             },
             model_structure: ModelStructure::new(description),
+        }
+    }
+}
+
+impl ModelExchange {
+    fn new(description: &Description) -> Self {
+        let can = Capabilities::of(description);
+        Self {
+            model_identifier: description.name,
+            needs_execution_tool: can.needs_execution_tool,
+            can_be_instantiated_only_once_per_process: can.can_be_instantiated_only_once_per_process,
+            can_get_and_set_fmu_state: can.can_get_and_set_fmu_state,
+            can_serialize_fmu_state: can.can_serialize_fmu_state,
+            provides_directional_derivatives: can.provides_directional_derivatives,
+            provides_adjoint_derivatives: can.provides_adjoint_derivatives,
+            provides_per_element_dependencies: can.provides_per_element_dependencies,
+            needs_completed_integrator_step: can.needs_completed_integrator_step,
+            provides_evaluate_discrete_states: can.provides_evaluate_discrete_states,
         }
     }
 }
@@ -89,7 +108,7 @@ impl TypeDefinitions {
 }
 
 impl TypedVariable {
-    fn new(value_reference: usize, variable: &Variable) -> Self {
+    fn new(description: &Description, value_reference: usize, variable: &Variable) -> Self {
         let [minimum, maximum] = roles::range(variable);
         let attributes = |declared_type| VariableAttributes {
             name: variable.name,
@@ -102,6 +121,8 @@ impl TypedVariable {
             minimum,
             maximum,
             start: roles::start(variable),
+            derivative: roles::derivative_of(description, variable),
+            reinit: roles::reinit(variable),
         };
         match variable.kind {
             Kind::Real(quantity) => Self::Float64(attributes(Some(quantity.name))),
@@ -114,17 +135,20 @@ impl TypedVariable {
 
 impl ModelStructure {
     fn new(description: &Description) -> Self {
-        let unknown = |value_reference, dependencies: &[usize]| Unknown {
+        let unknown = |value_reference, dependencies: roles::Dependencies| Unknown {
             value_reference,
-            dependencies: roles::joined(dependencies),
-            dependencies_kind: roles::dependencies_kind(dependencies.len()),
+            dependencies: dependencies.list(0),
+            dependencies_kind: dependencies.kind_list(),
         };
+        let at_an_instant =
+            |reference| unknown(reference, roles::Dependencies::at_an_instant(description, reference, true));
         Self {
-            // Outputs change in a step only: at a communication point they depend on nothing.
-            outputs: roles::outputs(description).map(|reference| unknown(reference, &[])).collect(),
+            outputs: roles::outputs(description).map(at_an_instant).collect(),
+            derivatives: roles::derivatives(description).map(at_an_instant).collect(),
             initial_unknowns: roles::initial_unknowns(description)
-                .map(|(reference, dependencies)| unknown(reference, &dependencies))
+                .map(|(reference, dependencies)| unknown(reference, dependencies))
                 .collect(),
+            event_indicators: description.event_indicators().map(at_an_instant).collect(),
         }
     }
 }

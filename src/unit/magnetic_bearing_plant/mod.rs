@@ -1,9 +1,11 @@
 //! Exported unit `MagneticBearingPlant`: the bearing, a position sensor and, for studies, process noise.
 
+mod continuous;
+
 use super::magnetic_bearing::{EXACT, MAP, bias_flux, map, saturation_flux};
 use super::quantity::{ACCELERATION, LENGTH, MAGNETIC_FLUX, RATIO, VELOCITY, VOLTAGE};
-use super::variable::{Kind, Variability, Variable, variable_table};
-use super::{Description, Journal, Unit, UnitError, start_values};
+use super::variable::{Dependency, Kind, Variability, Variable, variable_table};
+use super::{ContinuousUnit, Description, Journal, Unit, UnitError, start_values};
 use crate::plant::magnetic_bearing::{MagneticBearing, State};
 use crate::signal::{GaussianNoise, quantise};
 use serde::{Deserialize, Serialize};
@@ -12,24 +14,47 @@ use serde_big_array::BigArray;
 variable_table! {
     TIME = Variable::time();
     VOLTAGE_INPUT = Variable::input("voltage", &VOLTAGE)
-        .describe("u, coil voltage, held over a step");
+        .describe("u, coil voltage, held over a step unless its derivative is set");
     POSITION = Variable::output("position", &LENGTH)
         .initially_from(&["initial.position"])
+        .depends_on(&[Dependency::constant("position")])
         .describe("x1, rotor displacement");
     VELOCITY_OUTPUT = Variable::output("velocity", &VELOCITY)
         .initially_from(&["initial.velocity"])
+        .depends_on(&[Dependency::constant("velocity")])
         .describe("x2, rotor velocity");
     FLUX = Variable::output("flux", &MAGNETIC_FLUX)
         .initially_from(&["initial.flux"])
+        .depends_on(&[Dependency::constant("flux")])
         .describe("x3, magnetic flux");
     VOLTAGE_MEASURED = Variable::held_output("voltage_measured", Kind::Real(&VOLTAGE))
-        .describe("Voltage that acted over the last step; wire it to the controller's voltage_applied");
+        .describe("Mean voltage that acted over the last step, in model exchange the one before the last event; wire it to the controller's voltage_applied");
     POSITION_MEASURED = Variable::held_output("position_measured", Kind::Real(&LENGTH))
         .initially_from(&["initial.position", "sensor.noise", "sensor.resolution", "sensor.seed"])
-        .describe("Displacement with sensor noise and resolution, one reading per step");
+        .describe("Displacement with sensor noise and resolution, one reading per step, in model exchange per event");
+    POSITION_DERIVATIVE = Variable::local("der(position)", Kind::Real(&VELOCITY), Variability::Continuous)
+        .initially_from(&["initial.velocity"])
+        .derivative_of("position")
+        .depends_on(&[Dependency::constant("velocity")])
+        .describe("x1' = x2");
     ACCELERATION_LOCAL = Variable::local("acceleration", Kind::Real(&ACCELERATION), Variability::Continuous)
         .initially_from(&["initial.flux", "bias_flux", "saturation_flux"])
+        .derivative_of("velocity")
+        .depends_on(&[
+            Dependency::dependent("flux"),
+            Dependency::dependent("bias_flux"),
+            Dependency::dependent("saturation_flux"),
+        ])
         .describe("x2' = epsilon x3 + x3 |x3|");
+    FLUX_DERIVATIVE = Variable::local("der(flux)", Kind::Real(&VOLTAGE), Variability::Continuous)
+        .initially_from(&["voltage"])
+        .derivative_of("flux")
+        .depends_on(&[Dependency::constant("voltage")])
+        .describe("x3' = u");
+    FLUX_SIGN = Variable::event_indicator("event_indicator.flux_sign")
+        .initially_from(&["initial.flux"])
+        .depends_on(&[Dependency::dependent("flux")])
+        .describe("Flux in units of 0.1 Wb; x3 |x3| has a kink where its sign changes");
     EPSILON = Variable::calculated("epsilon", Kind::Real(&RATIO))
         .initially_from(&["bias_flux", "saturation_flux"])
         .describe("2 bias_flux / saturation_flux");
@@ -55,9 +80,10 @@ variable_table! {
         .describe("Seed of sensor and process noise; the same seed gives the same run on every platform");
     PROCESS_FLUX_NOISE = Variable::tunable("process.flux_noise", Kind::Real(&MAGNETIC_FLUX), 0.0)
         .range(0.0, 1e3)
-        .describe("For studies: standard deviation of white noise added to the flux at each communication point");
+        .describe("For studies: standard deviation of white noise added to the flux at each communication point, not in \
+            model exchange");
     MAP_CHOICE = Variable::parameter("map", Kind::Enumeration(&MAP), EXACT)
-        .describe("How a step is solved");
+        .describe("How a step is solved; of no effect in model exchange");
 }
 
 pub static DESCRIPTION: Description = Description {
@@ -71,6 +97,11 @@ pub static DESCRIPTION: Description = Description {
         "The input voltage is held over a communication step and the step is solved in closed form, so the result \
          does not depend on the step size. The paper's closed form (4a) is exact only while the flux keeps its sign; \
          map = exact splits the step at the zero crossing, map = printed uses (4a) as it stands.",
+        "For model exchange the states are position, velocity and flux, and the right-hand side is equation (3) itself, \
+         without regard to map. The flux's change of sign is offered as a state event, since x3 |x3| has a kink there. \
+         voltage_measured and position_measured are discrete: they change at events only, when they take the voltage \
+         before the event and a new reading. In co-simulation the voltage may have a slope (input derivative of order \
+         1, FMI 2.0); the step is then solved exactly, too, whatever map is.",
         "Not in the paper: the sensor model and the process noise, which are off at the start values.",
     ],
     variables: &VARIABLES,
@@ -88,7 +119,10 @@ pub struct MagneticBearingPlant {
     #[serde(with = "BigArray")]
     values: [f64; COUNT],
     bearing: MagneticBearing,
-    state: State,
+    /// Slope of the input voltage during steps \[V/s\].
+    voltage_slope: f64,
+    /// On which side of zero the flux was at the last event.
+    is_flux_positive: bool,
     sensor_noise: GaussianNoise,
     process_noise: GaussianNoise,
 }
@@ -99,23 +133,31 @@ impl MagneticBearingPlant {
         Self {
             values: start_values(&VARIABLES),
             bearing: MagneticBearing { epsilon: 0.0 },
-            state: State::default(),
+            voltage_slope: 0.0,
+            is_flux_positive: true,
             sensor_noise: GaussianNoise::new(0, SENSOR_STREAM),
             process_noise: GaussianNoise::new(0, PROCESS_STREAM),
         }
     }
 
-    /// Writes the state and what follows from it to the outputs; takes one sensor reading.
-    fn publish(&mut self) {
+    fn state(&self) -> State {
+        let values = &self.values;
+        State { position: values[POSITION], velocity: values[VELOCITY_OUTPUT], flux: values[FLUX] }
+    }
+
+    fn set_state(&mut self, state: State) {
+        self.values[POSITION] = state.position;
+        self.values[VELOCITY_OUTPUT] = state.velocity;
+        self.values[FLUX] = state.flux;
+    }
+
+    fn read_sensor(&mut self) {
+        let position = self.values[POSITION];
         let reading = match self.values[SENSOR_NOISE] {
-            0.0 => self.state.position,
-            deviation => self.state.position + deviation * self.sensor_noise.sample(),
+            0.0 => position,
+            deviation => position + deviation * self.sensor_noise.sample(),
         };
-        self.values[POSITION] = self.state.position;
-        self.values[VELOCITY_OUTPUT] = self.state.velocity;
-        self.values[FLUX] = self.state.flux;
         self.values[POSITION_MEASURED] = quantise(reading, self.values[SENSOR_RESOLUTION]);
-        self.values[ACCELERATION_LOCAL] = self.bearing.acceleration(self.state.flux);
     }
 }
 
@@ -147,34 +189,48 @@ impl Unit for MagneticBearingPlant {
         values[EPSILON] = self.bearing.epsilon;
         values[TIME] = start_time;
         values[VOLTAGE_MEASURED] = 0.0;
-        self.state = State {
+        let state = State {
             position: values[INITIAL_POSITION],
             velocity: values[INITIAL_VELOCITY],
             flux: values[INITIAL_FLUX],
         };
+        self.is_flux_positive = state.flux >= 0.0;
         let seed = values[SENSOR_SEED] as u64;
         self.sensor_noise = GaussianNoise::new(seed, SENSOR_STREAM);
         self.process_noise = GaussianNoise::new(seed, PROCESS_STREAM);
-        self.publish();
+        self.set_state(state);
+        self.evaluate();
+        self.read_sensor();
         Ok(())
     }
 
     fn advance(&mut self, duration: f64, _: &mut dyn Journal) -> Result<(), UnitError> {
-        let voltage = self.values[VOLTAGE_INPUT];
-        let mut state = self.bearing.advance(map(self.values[MAP_CHOICE]), self.state, voltage, duration);
+        let (voltage, slope) = (self.values[VOLTAGE_INPUT], self.voltage_slope);
+        let mut state = if slope == 0.0 {
+            self.bearing.advance(map(self.values[MAP_CHOICE]), self.state(), voltage, duration)
+        } else {
+            self.bearing.advance_under_ramp(self.state(), voltage, slope, duration)
+        };
         check_finite(&state)?;
         if self.values[PROCESS_FLUX_NOISE] > 0.0 {
             state.flux += self.values[PROCESS_FLUX_NOISE] * self.process_noise.sample();
         }
-        self.state = state;
-        self.values[VOLTAGE_MEASURED] = voltage;
-        self.publish();
+        self.set_state(state);
+        self.values[VOLTAGE_INPUT] = voltage + slope * duration;
+        self.values[VOLTAGE_MEASURED] = voltage + 0.5 * slope * duration;
+        self.settle_flux_sign();
+        self.evaluate();
+        self.read_sensor();
         Ok(())
+    }
+
+    fn continuous(&mut self) -> Option<&mut dyn ContinuousUnit> {
+        Some(self)
     }
 
     fn is_consistent(&self) -> bool {
         self.bearing == MagneticBearing::with_bias(self.values[BIAS_FLUX], self.values[SATURATION_FLUX])
-            && check_finite(&self.state).is_ok()
+            && check_finite(&self.state()).is_ok()
     }
 
     fn boxed_clone(&self) -> Box<dyn Unit> {

@@ -1,12 +1,14 @@
 //! Exported unit `LevitatedBallPlant`: ball and coil between two stops, and a current sensor.
 
+mod continuous;
+
 use super::levitated_ball::{
     ACCELERATION, CURRENT, FLUX, FORCE, LABORATORY_FLUX, POSITION, VELOCITY, VOLTAGE, gap, gravity,
     inductance_constant, mass, resistance,
 };
-use super::variable::{Kind, Variability, Variable, variable_table};
-use super::{Description, Journal, Topic, Unit, UnitError, start_values};
-use crate::plant::end_stops::{Contact, transition};
+use super::variable::{Dependency, Kind, Variability, Variable, variable_table};
+use super::{ContinuousUnit, Description, Journal, Topic, Unit, UnitError, start_values};
+use crate::plant::end_stops::{Contact, rate_in_contact, transition};
 use crate::plant::levitated_ball::{Drive, DrivenBall, LevitatedBall, State};
 use crate::signal::{GaussianNoise, quantise};
 use serde::{Deserialize, Serialize};
@@ -15,34 +17,102 @@ use serde_big_array::BigArray;
 variable_table! {
     TIME = Variable::time();
     VOLTAGE_INPUT = Variable::input("voltage", &VOLTAGE)
-        .describe("u, coil voltage, held over a step");
+        .describe("u, coil voltage, held over a step unless its derivative is set");
     FORCE_INPUT = Variable::input("force", &FORCE)
-        .describe("Disturbing force on the ball, positive upwards, held over a step");
+        .describe("Disturbing force on the ball, positive upwards, held over a step unless its derivative is set");
     CURRENT_OUTPUT = Variable::output("current", &CURRENT)
         .initially_from(&["initial.position", "initial.flux", "inductance_constant", "gap", "lower_stop"])
+        .depends_on(&[
+            Dependency::dependent("position"),
+            Dependency::dependent("flux"),
+            Dependency::dependent("inductance_constant"),
+            Dependency::dependent("gap"),
+        ])
         .describe("i = (c - y) lam / k, coil current");
     POSITION_OUTPUT = Variable::output("position", &POSITION)
         .initially_from(&["initial.position", "gap", "lower_stop"])
+        .depends_on(&[Dependency::constant("position")])
+        .reinitialised()
         .describe("y, position of the ball, positive upwards, the magnet's face at gap");
     VELOCITY_OUTPUT = Variable::output("velocity", &VELOCITY)
         .initially_from(&["initial.velocity", "initial.position", "gap", "lower_stop"])
+        .depends_on(&[Dependency::constant("velocity")])
+        .reinitialised()
         .describe("p / m, velocity of the ball, positive upwards");
     FLUX_OUTPUT = Variable::output("flux", &FLUX)
         .initially_from(&["initial.flux"])
+        .depends_on(&[Dependency::constant("flux")])
         .describe("lam, flux linkage of the coil");
     VOLTAGE_MEASURED = Variable::held_output("voltage_measured", Kind::Real(&VOLTAGE))
-        .describe("Voltage that acted over the last step; wire it to the controller's voltage_applied");
+        .describe("Mean voltage that acted over the last step, in model exchange the one before the last event; wire it to the controller's voltage_applied");
     CURRENT_MEASURED = Variable::held_output("current_measured", Kind::Real(&CURRENT))
         .initially_from(&[
             "initial.position", "initial.flux", "inductance_constant", "gap", "lower_stop", "sensor.noise",
             "sensor.resolution", "sensor.seed",
         ])
-        .describe("Current with sensor noise and resolution, one reading per step");
+        .describe("Current with sensor noise and resolution, one reading per step, in model exchange per event");
     CONTACT = Variable::held_output("contact", Kind::Boolean)
-        .initially_from(&["initial.position", "gap", "lower_stop"])
+        .initially_from(&[
+            "initial.position", "initial.velocity", "initial.flux", "mass", "inductance_constant", "gravity", "gap",
+            "lower_stop",
+        ])
         .describe("Whether the ball rests on the magnet or on the lower stop");
+    POSITION_DERIVATIVE = Variable::local("der(position)", Kind::Real(&VELOCITY), Variability::Continuous)
+        .initially_from(&["initial.velocity", "initial.position", "gap", "lower_stop"])
+        .derivative_of("position")
+        .depends_on(&[Dependency::discrete("velocity")])
+        .describe("y', 0 in contact");
     ACCELERATION_LOCAL = Variable::local("acceleration", Kind::Real(&ACCELERATION), Variability::Continuous)
-        .describe("p' / m under the force of the last step; 0 in contact");
+        .initially_from(&[
+            "force", "initial.position", "initial.velocity", "initial.flux", "mass", "inductance_constant", "gravity", "gap", "lower_stop",
+        ])
+        .derivative_of("velocity")
+        .depends_on(&[
+            Dependency::dependent("flux"),
+            Dependency::discrete("force"),
+            Dependency::dependent("mass"),
+            Dependency::dependent("inductance_constant"),
+            Dependency::discrete("gravity"),
+        ])
+        .describe("p' / m under the present force; 0 in contact");
+    FLUX_DERIVATIVE = Variable::local("der(flux)", Kind::Real(&VOLTAGE), Variability::Continuous)
+        .initially_from(&[
+            "voltage", "initial.position", "initial.flux", "resistance", "inductance_constant", "gap", "lower_stop",
+        ])
+        .derivative_of("flux")
+        .depends_on(&[
+            Dependency::constant("voltage"),
+            Dependency::dependent("position"),
+            Dependency::dependent("flux"),
+            Dependency::dependent("resistance"),
+            Dependency::dependent("inductance_constant"),
+            Dependency::dependent("gap"),
+        ])
+        .describe("lam' = u - R i");
+    LOWER_STOP_INDICATOR = Variable::event_indicator("event_indicator.lower_stop")
+        .depends_on(&[
+            Dependency::dependent("position"),
+            Dependency::dependent("flux"),
+            Dependency::dependent("force"),
+            Dependency::dependent("mass"),
+            Dependency::dependent("inductance_constant"),
+            Dependency::dependent("gravity"),
+            Dependency::dependent("gap"),
+            Dependency::dependent("lower_stop"),
+        ])
+        .describe("Distance to the lower stop as a share of the free way; resting there, what presses the ball on, in g");
+    MAGNET_INDICATOR = Variable::event_indicator("event_indicator.magnet")
+        .depends_on(&[
+            Dependency::dependent("position"),
+            Dependency::dependent("flux"),
+            Dependency::dependent("force"),
+            Dependency::dependent("mass"),
+            Dependency::dependent("inductance_constant"),
+            Dependency::dependent("gravity"),
+            Dependency::dependent("gap"),
+            Dependency::dependent("lower_stop"),
+        ])
+        .describe("Distance to the magnet as a share of the free way; resting there, what presses the ball on, in g");
     MAGNETIC_FORCE = Variable::local("magnetic_force", Kind::Real(&FORCE), Variability::Continuous)
         .initially_from(&["initial.flux", "inductance_constant"])
         .describe("lam^2 / (2 k), force of the magnet on the ball");
@@ -86,6 +156,10 @@ pub static DESCRIPTION: Description = Description {
          steps of at most 0.1 ms, less where the coil is faster; the result hardly depends on the communication step. \
          The ball moves between the magnet's face at gap and lower_stop. An impact is inelastic; times of impact and \
          release are found to the last digit.",
+        "For model exchange the states are position, velocity and flux; impacts and releases are state events, at which \
+         position and velocity may jump. voltage_measured, current_measured and contact are discrete: they change at \
+         events only, when they take the voltage before the event and a new reading. In co-simulation voltage and force \
+         may have a slope (input derivative of order 1, FMI 2.0).",
         "Not in the paper: the disturbing force, the stops and the sensor model.",
     ],
     variables: &VARIABLES,
@@ -104,8 +178,9 @@ pub struct LevitatedBallPlant {
     #[serde(with = "BigArray")]
     values: [f64; COUNT],
     ball: LevitatedBall,
-    state: State,
     contact: Contact,
+    /// Slopes of the inputs during steps \[V/s, N/s\].
+    slope: Drive,
     sensor_noise: GaussianNoise,
 }
 
@@ -116,31 +191,31 @@ impl LevitatedBallPlant {
         Self {
             ball: ball(&values),
             values,
-            state: State::default(),
             contact: Contact::None,
+            slope: Drive::default(),
             sensor_noise: GaussianNoise::new(0, SENSOR_STREAM),
         }
     }
 
-    /// Writes the state and what follows from it to the outputs; takes one sensor reading.
-    fn publish(&mut self) {
-        let Self { values, ball, state, contact, sensor_noise } = self;
-        let current = ball.current(state.position, state.flux);
-        let reading = match values[SENSOR_NOISE] {
+    fn state(&self) -> [f64; 3] {
+        [POSITION_OUTPUT, VELOCITY_OUTPUT, FLUX_OUTPUT].map(|row| self.values[row])
+    }
+
+    fn set_state(&mut self, [position, velocity, flux]: [f64; 3], contact: Contact) {
+        self.values[POSITION_OUTPUT] = position;
+        self.values[VELOCITY_OUTPUT] = velocity;
+        self.values[FLUX_OUTPUT] = flux;
+        self.values[CONTACT] = f64::from(u8::from(contact != Contact::None));
+        self.contact = contact;
+    }
+
+    fn read_sensor(&mut self) {
+        let current = self.values[CURRENT_OUTPUT];
+        let reading = match self.values[SENSOR_NOISE] {
             0.0 => current,
-            deviation => current + deviation * sensor_noise.sample(),
+            deviation => current + deviation * self.sensor_noise.sample(),
         };
-        let force = ball.magnetic_force(state.flux);
-        let touches = *contact != Contact::None;
-        values[POSITION_OUTPUT] = state.position;
-        values[VELOCITY_OUTPUT] = state.velocity;
-        values[FLUX_OUTPUT] = state.flux;
-        values[CURRENT_OUTPUT] = current;
-        values[CURRENT_MEASURED] = quantise(reading, values[SENSOR_RESOLUTION]);
-        values[CONTACT] = f64::from(u8::from(touches));
-        values[MAGNETIC_FORCE] = force;
-        values[ACCELERATION_LOCAL] =
-            if touches { 0.0 } else { (force + values[FORCE_INPUT]) / ball.mass - ball.gravity };
+        self.values[CURRENT_MEASURED] = quantise(reading, self.values[SENSOR_RESOLUTION]);
     }
 }
 
@@ -173,11 +248,11 @@ impl Unit for LevitatedBallPlant {
         values[VOLTAGE_MEASURED] = 0.0;
         let mut state = [values[INITIAL_POSITION], values[INITIAL_VELOCITY], values[INITIAL_FLUX]];
         let driven = DrivenBall::new(&self.ball, values[LOWER_STOP], Drive::default());
-        self.contact = transition(&driven, &mut state, Contact::None);
-        let [position, velocity, flux] = state;
-        self.state = State { position, velocity, flux };
+        let contact = transition(&driven, &mut state, Contact::None);
         self.sensor_noise = GaussianNoise::new(values[SENSOR_SEED] as u64, SENSOR_STREAM);
-        self.publish();
+        self.set_state(state, contact);
+        self.evaluate();
+        self.read_sensor();
         Ok(())
     }
 
@@ -188,24 +263,35 @@ impl Unit for LevitatedBallPlant {
             return Err(UnitError::StepTooLong { duration, limit });
         }
         let drive = Drive { voltage: self.values[VOLTAGE_INPUT], force: self.values[FORCE_INPUT] };
-        let (mut state, mut contact) = (self.state, self.contact);
-        self.ball.advance(lower_stop, &mut state, &mut contact, drive, duration);
+        let [position, velocity, flux] = self.state();
+        let (mut state, mut contact) = (State { position, velocity, flux }, self.contact);
+        let slope = self.slope;
+        if slope == Drive::default() {
+            self.ball.advance(lower_stop, &mut state, &mut contact, drive, duration);
+        } else {
+            self.ball.advance_under_ramp(lower_stop, &mut state, &mut contact, drive, slope, duration);
+        }
         check_finite(&self.ball, &state)?;
         if contact != self.contact && journal.wants(Topic::Events) {
             note_contact(contact, journal);
         }
-        self.state = state;
-        self.contact = contact;
-        self.values[VOLTAGE_MEASURED] = drive.voltage;
-        self.publish();
+        self.set_state([state.position, state.velocity, state.flux], contact);
+        self.values[VOLTAGE_INPUT] = drive.voltage + slope.voltage * duration;
+        self.values[FORCE_INPUT] = drive.force + slope.force * duration;
+        self.values[VOLTAGE_MEASURED] = drive.voltage + 0.5 * slope.voltage * duration;
+        self.evaluate();
+        self.read_sensor();
         Ok(())
     }
 
+    fn continuous(&mut self) -> Option<&mut dyn ContinuousUnit> {
+        Some(self)
+    }
+
     fn is_consistent(&self) -> bool {
-        let stops = self.values[LOWER_STOP]..=self.values[GAP];
+        let [position, velocity, flux] = self.state();
         self.ball == ball(&self.values)
-            && check_finite(&self.ball, &self.state).is_ok()
-            && stops.contains(&self.state.position)
+            && check_finite(&self.ball, &State { position, velocity, flux }).is_ok()
     }
 
     fn boxed_clone(&self) -> Box<dyn Unit> {

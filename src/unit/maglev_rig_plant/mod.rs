@@ -1,54 +1,113 @@
 //! Exported unit `MaglevRigPlant`: ball, coil with its driver, position sensor and end stops.
 
+mod continuous;
+
 use super::maglev_rig::{
     BALL_ACCELERATION, BALL_DISTANCE, BALL_VELOCITY, DRIVER_GAIN, DRIVER_VOLTAGE, ELECTROMAGNETIC_CONSTANT,
     OPERATING_VOLTAGE, RIG_CURRENT, RIG_FORCE, RIG_GRAVITY, RIG_MASS, SENSOR_NOISE as SENSOR_NOISE_QUANTITY,
     SENSOR_VOLTAGE as SENSOR_VOLTAGE_QUANTITY, sensor_gain, sensor_offset, voltage_max, voltage_min,
 };
-use super::variable::{Kind, Variability, Variable, variable_table};
-use super::{Description, Journal, Topic, Unit, UnitError, start_values};
+use super::variable::{Dependency, Kind, Variability, Variable, variable_table};
+use super::{ContinuousUnit, Description, Journal, Topic, Unit, UnitError, start_values};
 use crate::controller::saturate_between;
-use crate::plant::end_stops::Contact;
+use crate::plant::end_stops::{Contact, rate_in_contact, transition};
 use crate::plant::maglev_rig::{HeldBall, MaglevRig, PositionSensor, State};
+use crate::plant::maglev_rig_ramp::RampedBall;
 use crate::signal::{GaussianNoise, quantise};
 use serde::{Deserialize, Serialize};
 use serde_big_array::BigArray;
+
+/// What the free ball's acceleration follows from.
+const FORCES: &[Dependency] = &[
+    Dependency::dependent("position"),
+    Dependency::dependent("voltage"),
+    Dependency::discrete("force"),
+    Dependency::dependent("mass"),
+    Dependency::discrete("gravity"),
+    Dependency::dependent("electromagnetic_constant"),
+    Dependency::dependent("driver_gain"),
+    Dependency::dependent("voltage_min"),
+    Dependency::dependent("voltage_max"),
+    Dependency::dependent("upper_stop"),
+];
+
+/// What the distance to a stop and what presses the ball on follow from.
+const CONTACT_FORCES: &[Dependency] = &[
+    Dependency::dependent("position"),
+    Dependency::dependent("voltage"),
+    Dependency::dependent("force"),
+    Dependency::dependent("mass"),
+    Dependency::dependent("gravity"),
+    Dependency::dependent("electromagnetic_constant"),
+    Dependency::dependent("driver_gain"),
+    Dependency::dependent("voltage_min"),
+    Dependency::dependent("voltage_max"),
+    Dependency::dependent("upper_stop"),
+    Dependency::dependent("lower_stop"),
+];
 
 variable_table! {
     TIME = Variable::time();
     VOLTAGE_INPUT = Variable::input("voltage", &DRIVER_VOLTAGE)
         .start(OPERATING_VOLTAGE)
-        .describe("u, voltage at the coil's driver, held over a step and limited by it");
+        .describe("u, voltage at the coil's driver, held over a step unless its derivative is set, and limited by it");
     FORCE = Variable::input("force", &RIG_FORCE)
         .range(-1e3, 1e3)
-        .describe("Disturbing force on the ball, positive downwards, held over a step");
+        .describe("Disturbing force on the ball, positive downwards, held over a step unless its derivative is set");
     POSITION = Variable::output("position", &BALL_DISTANCE)
         .initially_from(&["initial.position", "upper_stop", "lower_stop"])
+        .depends_on(&[Dependency::constant("position")])
+        .reinitialised()
         .describe("x, distance from coil to ball, positive downwards");
     VELOCITY = Variable::output("velocity", &BALL_VELOCITY)
         .initially_from(&["initial.velocity", "initial.position", "upper_stop", "lower_stop"])
+        .depends_on(&[Dependency::constant("velocity")])
+        .reinitialised()
         .describe("x', velocity of the ball, positive downwards");
     CURRENT = Variable::held_output("current", Kind::Real(&RIG_CURRENT))
-        .describe("i = k1 u, coil current over the last step");
+        .describe("i = k1 u, coil current over the last step, of voltage_measured");
     SENSOR_VOLTAGE = Variable::output("sensor_voltage", &SENSOR_VOLTAGE_QUANTITY)
         .initially_from(&["initial.position", "upper_stop", "lower_stop", "sensor_gain", "sensor_offset"])
+        .depends_on(&[
+            Dependency::fixed("position"),
+            Dependency::dependent("sensor_gain"),
+            Dependency::constant("sensor_offset"),
+        ])
         .describe("k2 x + eta, true sensor voltage");
     SENSOR_VOLTAGE_MEASURED = Variable::held_output("sensor_voltage_measured", Kind::Real(&SENSOR_VOLTAGE_QUANTITY))
         .initially_from(&[
             "initial.position", "upper_stop", "lower_stop", "sensor_gain", "sensor_offset", "sensor.noise",
             "sensor.resolution", "sensor.seed", "sensor.minimum", "sensor.maximum",
         ])
-        .describe("Sensor voltage with noise, resolution and range, one reading per step");
+        .describe("Sensor voltage with noise, resolution and range, one reading per step, in model exchange per event");
     VOLTAGE_MEASURED = Variable::held_output("voltage_measured", Kind::Real(&DRIVER_VOLTAGE))
-        .describe("Voltage that acted over the last step, within the driver's limits; wire it to the controller's \
+        .describe("Mean voltage that acted over the last step, within the driver's limits, in model exchange the one \
+            before the last event; wire it to the controller's \
             voltage_applied");
     CONTACT = Variable::held_output("contact", Kind::Boolean)
-        .initially_from(&["initial.position", "upper_stop", "lower_stop"])
+        .initially_from(&["initial.position", "initial.velocity", "gravity", "upper_stop", "lower_stop"])
         .describe("Whether the ball rests on a stop");
+    POSITION_DERIVATIVE = Variable::local("der(position)", Kind::Real(&BALL_VELOCITY), Variability::Continuous)
+        .initially_from(&["initial.velocity", "initial.position", "upper_stop", "lower_stop"])
+        .derivative_of("position")
+        .depends_on(&[Dependency::discrete("velocity")])
+        .describe("x', 0 at rest on a stop");
     ACCELERATION = Variable::local("acceleration", Kind::Real(&BALL_ACCELERATION), Variability::Continuous)
-        .describe("x'' at the end of the last step, under the voltage and force of that step; 0 at rest on a stop");
+        .initially_from(&[
+            "voltage", "force", "initial.position", "initial.velocity", "mass", "gravity", "electromagnetic_constant", "driver_gain",
+            "voltage_min", "voltage_max", "upper_stop", "lower_stop",
+        ])
+        .derivative_of("velocity")
+        .depends_on(FORCES)
+        .describe("x'' under the present voltage and force; 0 at rest on a stop");
+    UPPER_STOP_INDICATOR = Variable::event_indicator("event_indicator.upper_stop")
+        .depends_on(CONTACT_FORCES)
+        .describe("Distance to the upper stop as a share of the free way; resting there, what presses the ball on, in g");
+    LOWER_STOP_INDICATOR = Variable::event_indicator("event_indicator.lower_stop")
+        .depends_on(CONTACT_FORCES)
+        .describe("Distance to the lower stop as a share of the free way; resting there, what presses the ball on, in g");
     MAGNETIC_FORCE = Variable::local("magnetic_force", Kind::Real(&RIG_FORCE), Variability::Continuous)
-        .describe("K i^2 / x^2 at the end of the last step, upwards");
+        .describe("K i^2 / x^2 under the present voltage, upwards");
     MASS = Variable::parameter("mass", Kind::Real(&RIG_MASS), MaglevRig::PRINTED.mass)
         .range(1e-6, 1e3)
         .describe("m, printed in Table 1");
@@ -113,6 +172,10 @@ pub static DESCRIPTION: Description = Description {
         "Voltage and force are held over a communication step, which is solved by a Runge-Kutta method of order 5 in \
          steps of at most 50 us; times of impact and release are found to the last digit. The result does not depend on \
          the communication step but for rounding and, close to the coil at full voltage, parts in a million.",
+        "For model exchange the states are position and velocity; impacts and releases are state events, at which both \
+         may jump. voltage_measured, current, sensor_voltage_measured and contact are discrete: they change at events \
+         only, when they take the voltage before the event and a new reading. In co-simulation voltage and force may have \
+         a slope (input derivative of order 1, FMI 2.0).",
         "Printed: m, g, K, k1. From the rig's manual, by way of a public virtual laboratory: sensor gain, offset and \
          range, operating point 9 mm, limits of the voltage (their negative half is left out: the force goes with the \
          square, so that negative voltages attract, too). Assumed: the stops. Not modelled: the driver's current loop.",
@@ -132,8 +195,10 @@ const SENSOR_STREAM: u64 = 1;
 pub struct MaglevRigPlant {
     #[serde(with = "BigArray")]
     values: [f64; COUNT],
-    state: State,
     contact: Contact,
+    /// Slopes of the inputs during steps \[V/s\] and \[N/s\].
+    voltage_slope: f64,
+    force_slope: f64,
     sensor_noise: GaussianNoise,
 }
 
@@ -142,8 +207,9 @@ impl MaglevRigPlant {
     pub fn new() -> Self {
         Self {
             values: start_values(&VARIABLES),
-            state: State::default(),
             contact: Contact::None,
+            voltage_slope: 0.0,
+            force_slope: 0.0,
             sensor_noise: GaussianNoise::new(0, SENSOR_STREAM),
         }
     }
@@ -168,30 +234,39 @@ impl MaglevRigPlant {
         }
     }
 
-    /// Writes the state and what follows from it to the outputs; takes one sensor reading. `voltage` and `force` are
-    /// those of the last step.
-    fn publish(&mut self, voltage: f64, force: f64) {
-        let rig = self.rig();
+    /// The input voltage within the driver's limits \[V\].
+    fn driver_voltage(&self) -> f64 {
+        let limits = (self.values[VOLTAGE_MIN], self.values[VOLTAGE_MAX]);
+        saturate_between(self.values[VOLTAGE_INPUT], limits, 0.0)
+    }
+
+    fn state(&self) -> [f64; 2] {
+        [POSITION, VELOCITY].map(|row| self.values[row])
+    }
+
+    fn set_state(&mut self, [position, velocity]: [f64; 2], contact: Contact) {
+        self.values[POSITION] = position;
+        self.values[VELOCITY] = velocity;
+        self.values[CONTACT] = f64::from(u8::from(contact != Contact::None));
+        self.contact = contact;
+    }
+
+    /// Tells which `voltage` \[V\] acted.
+    fn echo(&mut self, voltage: f64) {
+        self.values[VOLTAGE_MEASURED] = voltage;
+        self.values[CURRENT] = self.values[DRIVER_GAIN_PARAMETER] * voltage;
+    }
+
+    fn read_sensor(&mut self) {
         let values = &mut self.values;
-        let State { position, velocity } = self.state;
-        let sensor = PositionSensor { gain: values[SENSOR_GAIN], offset: values[SENSOR_OFFSET] };
-        let sensor_voltage = sensor.voltage(position);
+        let voltage = values[SENSOR_VOLTAGE];
         let reading = match values[SENSOR_NOISE] {
-            0.0 => sensor_voltage,
-            deviation => sensor_voltage + deviation * self.sensor_noise.sample(),
+            0.0 => voltage,
+            deviation => voltage + deviation * self.sensor_noise.sample(),
         };
         let range = (values[SENSOR_MINIMUM], values[SENSOR_MAXIMUM]);
-        let free_acceleration = rig.acceleration(position, voltage, force);
-        values[POSITION] = position;
-        values[VELOCITY] = velocity;
-        values[CURRENT] = rig.driver_gain * voltage;
-        values[SENSOR_VOLTAGE] = sensor_voltage;
         values[SENSOR_VOLTAGE_MEASURED] =
-            saturate_between(quantise(reading, values[SENSOR_RESOLUTION]), range, sensor_voltage);
-        values[VOLTAGE_MEASURED] = voltage;
-        values[CONTACT] = f64::from(u8::from(self.contact != Contact::None));
-        values[ACCELERATION] = if self.contact == Contact::None { free_acceleration } else { 0.0 };
-        values[MAGNETIC_FORCE] = rig.magnetic_force(position, voltage);
+            saturate_between(quantise(reading, values[SENSOR_RESOLUTION]), range, voltage);
     }
 }
 
@@ -223,8 +298,11 @@ impl Unit for MaglevRigPlant {
         let start = State { position: values[INITIAL_POSITION], velocity: values[INITIAL_VELOCITY] };
         self.sensor_noise = GaussianNoise::new(values[SENSOR_SEED] as u64, SENSOR_STREAM);
         // Before the first step no voltage has acted.
-        (self.state, self.contact) = self.ball(0.0, 0.0).settle(start);
-        self.publish(0.0, 0.0);
+        let (state, contact) = self.ball(0.0, 0.0).settle(start);
+        self.echo(0.0);
+        self.set_state([state.position, state.velocity], contact);
+        self.evaluate();
+        self.read_sensor();
         Ok(())
     }
 
@@ -232,22 +310,42 @@ impl Unit for MaglevRigPlant {
         if duration > LONGEST_STEP {
             return Err(UnitError::StepTooLong { duration, limit: LONGEST_STEP });
         }
-        let values = &self.values;
-        let limits = (values[VOLTAGE_MIN], values[VOLTAGE_MAX]);
-        let (voltage, force) = (saturate_between(values[VOLTAGE_INPUT], limits, 0.0), values[FORCE]);
-        let (state, contact) = self.ball(voltage, force).advance(self.state, self.contact, duration);
+        let [position, velocity] = self.state();
+        let (start, force) = (State { position, velocity }, self.values[FORCE]);
+        let (voltage_slope, force_slope) = (self.voltage_slope, self.force_slope);
+        let (state, contact, voltage) = if voltage_slope == 0.0 && force_slope == 0.0 {
+            let voltage = self.driver_voltage();
+            let (state, contact) = self.ball(voltage, force).advance(start, self.contact, duration);
+            (state, contact, voltage)
+        } else {
+            let end = force + force_slope * duration;
+            VARIABLES[FORCE].check(end).map_err(UnitError::InputLeavesRange)?;
+            let begin = self.ball(self.values[VOLTAGE_INPUT], force);
+            let voltage_limits = (self.values[VOLTAGE_MIN], self.values[VOLTAGE_MAX]);
+            let ball = RampedBall { begin, voltage_slope, force_slope, voltage_limits };
+            let (state, contact) = ball.advance(start, self.contact, duration);
+            (state, contact, ball.mean_voltage(duration))
+        };
         check_finite(&state)?;
         if contact != self.contact && journal.wants(Topic::Events) {
-            note_contact(values[TIME] + duration, contact, journal);
+            note_contact(self.values[TIME] + duration, contact, journal);
         }
-        (self.state, self.contact) = (state, contact);
-        self.publish(voltage, force);
+        self.values[VOLTAGE_INPUT] += voltage_slope * duration;
+        self.values[FORCE] += force_slope * duration;
+        self.echo(voltage);
+        self.set_state([state.position, state.velocity], contact);
+        self.evaluate();
+        self.read_sensor();
         Ok(())
     }
 
+    fn continuous(&mut self) -> Option<&mut dyn ContinuousUnit> {
+        Some(self)
+    }
+
     fn is_consistent(&self) -> bool {
-        let stops = self.values[UPPER_STOP]..=self.values[LOWER_STOP];
-        check_finite(&self.state).is_ok() && stops.contains(&self.state.position)
+        let [position, velocity] = self.state();
+        check_finite(&State { position, velocity }).is_ok()
     }
 
     fn boxed_clone(&self) -> Box<dyn Unit> {

@@ -1,0 +1,188 @@
+//! Derivatives: directional and adjoint ones between variables, and those of inputs and outputs with respect to time.
+
+use super::{CallError, Instance, Interface, Phase};
+use crate::unit::ContinuousUnit;
+use crate::unit::value::ValueError;
+use crate::unit::variable::{Causality, Kind, Variability, Variable};
+
+/// What the sampled units answer: their outputs are held between ticks, so that at a communication point they depend on
+/// no input, and every derivative would be zero.
+const HELD: CallError = CallError::NotOffered("its outputs are held between ticks");
+
+impl Instance {
+    /// Sensitivity of each unknown when all knowns move along `seed`.
+    pub(super) fn directional_derivative(
+        &mut self,
+        unknowns: &[u32],
+        knowns: &[u32],
+        seed: &[f64],
+        sensitivity: &mut [f64],
+    ) -> Result<(), CallError> {
+        let unit = Differentiated::new(self, unknowns, knowns)?;
+        for (result, unknown) in sensitivity.iter_mut().zip(unknowns) {
+            let terms = knowns.iter().zip(seed);
+            *result = terms.map(|(known, seed)| unit.partial(*unknown, *known) * seed).sum();
+        }
+        Ok(())
+    }
+
+    /// Sensitivity of the unknowns, weighted with `seed`, to each known.
+    pub(super) fn adjoint_derivative(
+        &mut self,
+        unknowns: &[u32],
+        knowns: &[u32],
+        seed: &[f64],
+        sensitivity: &mut [f64],
+    ) -> Result<(), CallError> {
+        let unit = Differentiated::new(self, unknowns, knowns)?;
+        for (result, known) in sensitivity.iter_mut().zip(knowns) {
+            let terms = unknowns.iter().zip(seed);
+            *result = terms.map(|(unknown, seed)| unit.partial(*unknown, *known) * seed).sum();
+        }
+        Ok(())
+    }
+
+    /// First derivatives of outputs with respect to time at the end of the last step; 0 for outputs that are held.
+    pub(super) fn output_derivatives(
+        &mut self,
+        references: &[u32],
+        orders: &[i32],
+        derivatives: &mut [f64],
+    ) -> Result<(), CallError> {
+        self.require_co_simulation()?;
+        for (reference, order) in references.iter().zip(orders) {
+            let variable = self.find_real(*reference)?;
+            if variable.causality != Causality::Output {
+                return Err(wrong_role(variable, *reference, "an output"));
+            }
+            require_first_order(variable, *order)?;
+        }
+        self.evaluate();
+        let rows = self.rows;
+        let unit = self.unit.continuous().ok_or(HELD)?;
+        for (derivative, reference) in derivatives.iter_mut().zip(references) {
+            *derivative = unit.output_slope(*reference as usize, &rows);
+        }
+        Ok(())
+    }
+
+    /// First derivatives of inputs with respect to time, from the begin of the next step on.
+    pub(super) fn set_input_derivatives(
+        &mut self,
+        references: &[u32],
+        orders: &[i32],
+        derivatives: &[f64],
+    ) -> Result<(), CallError> {
+        self.require_co_simulation()?;
+        for ((reference, order), derivative) in references.iter().zip(orders).zip(derivatives) {
+            let variable = self.find_real(*reference)?;
+            let is_continuous_input =
+                variable.causality == Causality::Input && variable.variability == Variability::Continuous;
+            if !is_continuous_input {
+                return Err(wrong_role(variable, *reference, "a continuous input"));
+            }
+            require_first_order(variable, *order)?;
+            if !derivative.is_finite() {
+                let (name, value) = (variable.name, *derivative);
+                return Err(ValueError::SlopeNotFinite { name, value, unit: variable.unit() }.into());
+            }
+        }
+        let unit = self.unit.continuous().ok_or(HELD)?;
+        for (reference, derivative) in references.iter().zip(derivatives) {
+            unit.set_input_slope(*reference as usize, *derivative);
+        }
+        Ok(())
+    }
+
+    fn require_co_simulation(&self) -> Result<(), CallError> {
+        match self.interface {
+            Interface::CoSimulation => Ok(()),
+            other => Err(CallError::WrongInterface(other.name())),
+        }
+    }
+
+    fn find_real(&self, reference: u32) -> Result<&'static Variable, CallError> {
+        let Some(variable) = self.variables.get(reference as usize) else {
+            return Err(CallError::UnknownReference { reference, largest: self.variables.len() - 1 });
+        };
+        match variable.kind {
+            Kind::Real(_) => Ok(variable),
+            _ => Err(wrong_role(variable, reference, "a real variable")),
+        }
+    }
+
+    /// Whether the variable is computed from others at this stage.
+    fn is_unknown(&self, reference: u32, variable: &Variable) -> bool {
+        let row = reference as usize;
+        let is_listed = self.rows.derivatives().contains(&row) || variable.causality == Causality::Output;
+        is_listed || (self.is_initialising() && variable.causality == Causality::CalculatedParameter)
+    }
+
+    /// Whether the variable is given at this stage.
+    fn is_known(&self, reference: u32, variable: &Variable) -> bool {
+        match variable.causality {
+            Causality::Input | Causality::Parameter | Causality::Independent => true,
+            _ => !self.is_initialising() && self.rows.states().contains(&(reference as usize)),
+        }
+    }
+
+    fn is_initialising(&self) -> bool {
+        self.phase == Phase::InitializationMode
+    }
+}
+
+/// A unit whose unknowns and knowns have been checked.
+struct Differentiated<'a> {
+    unit: &'a dyn ContinuousUnit,
+    is_initialising: bool,
+}
+
+impl<'a> Differentiated<'a> {
+    fn new(instance: &'a mut Instance, unknowns: &[u32], knowns: &[u32]) -> Result<Self, CallError> {
+        if instance.unit.continuous().is_none() {
+            return Err(HELD);
+        }
+        for reference in unknowns {
+            let variable = instance.find_real(*reference)?;
+            if !instance.is_unknown(*reference, variable) {
+                return Err(wrong_role(variable, *reference, "an unknown: an output or a state derivative"));
+            }
+        }
+        for reference in knowns {
+            let variable = instance.find_real(*reference)?;
+            if !instance.is_known(*reference, variable) {
+                return Err(wrong_role(variable, *reference, "a known: an input, a parameter or a state"));
+            }
+        }
+        instance.refresh_before_first_step()?;
+        instance.evaluate();
+        let is_initialising = instance.is_initialising();
+        Ok(Self { unit: instance.unit.continuous().ok_or(HELD)?, is_initialising })
+    }
+
+    fn partial(&self, unknown: u32, known: u32) -> f64 {
+        let (unknown, known) = (unknown as usize, known as usize);
+        if self.is_initialising {
+            self.unit.initial_partial_derivative(unknown, known)
+        } else {
+            self.unit.partial_derivative(unknown, known)
+        }
+    }
+}
+
+fn require_first_order(variable: &Variable, order: i32) -> Result<(), CallError> {
+    if order == 1 { Ok(()) } else { Err(CallError::WrongOrder { name: variable.name, order }) }
+}
+
+fn wrong_role(variable: &Variable, reference: u32, expected: &'static str) -> CallError {
+    let is = match (variable.causality, variable.kind) {
+        (_, Kind::Integer | Kind::Boolean | Kind::Enumeration(_)) => "no real number",
+        (Causality::Independent, _) => "the independent variable",
+        (Causality::Parameter, _) => "a parameter",
+        (Causality::CalculatedParameter, _) => "a calculated parameter",
+        (Causality::Input, _) => "an input",
+        (Causality::Output, _) => "an output",
+        (Causality::Local, _) => "a local variable",
+    };
+    CallError::WrongRole { name: variable.name, reference, is, expected }
+}

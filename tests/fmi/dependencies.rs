@@ -1,0 +1,207 @@
+//! The declared dependencies against what moves when something is changed.
+
+use std::collections::BTreeSet;
+
+use maglev_fmu::unit::UNITS;
+use maglev_fmu::unit::variable::{Causality, Kind, Variability, Variable};
+use rand_core::{Rng, SeedableRng};
+use rand_pcg::Pcg32;
+
+use super::harness::{Component, OK, Standard, plants};
+
+/// A random number in (0, 1).
+fn uniform(random: &mut Pcg32) -> f64 {
+    (f64::from(random.next_u32()) + 0.5) / f64::from(u32::MAX)
+}
+
+/// A value that the variable may have: around its start, of either sign where it may be, for an input also far beyond
+/// what a driver gives and for a position around and beyond the stops.
+fn value(variable: &Variable, random: &mut Pcg32) -> f64 {
+    let (minimum, maximum) = variable.range;
+    let share = uniform(random);
+    let choice = uniform(random);
+    match variable.kind {
+        Kind::Real(_) if variable.name == "initial.position" => match choice {
+            0.0..0.15 => minimum,
+            0.15..0.3 => maximum,
+            0.3..0.7 => (0.012 * share).clamp(minimum, maximum),
+            _ => (0.06 * share - 0.03).clamp(minimum, maximum),
+        },
+        Kind::Real(quantity) => {
+            let size = match variable.start {
+                0.0 => 0.1 * quantity.nominal,
+                _ if variable.causality == Causality::Input && choice < 0.3 => 10.0 * quantity.nominal,
+                start => start,
+            };
+            let sign = if uniform(random) < 0.3 { -1.0 } else { 1.0 };
+            (sign * size * (0.5 + share)).clamp(minimum, maximum)
+        }
+        Kind::Integer => (minimum + share * 20.0).floor().min(maximum),
+        Kind::Boolean => f64::from(u8::from(share > 0.5)),
+        Kind::Enumeration(enumeration) => 1.0 + (share * enumeration.items.len() as f64).floor(),
+    }
+}
+
+fn rows(component: &Component, keep: impl Fn(&Variable) -> bool) -> Vec<u32> {
+    (0..component.description.variables.len() as u32).filter(|row| keep(component.variable(*row))).collect()
+}
+
+/// Pairs (unknown, known) by name of which the unknown moved when the known was changed.
+type Moved = BTreeSet<(&'static str, &'static str)>;
+
+/// Records which of `unknowns` move when `known` is changed by `change`, which may leave it as it was.
+fn record(component: &Component, unknowns: &[u32], known: u32, moved: &mut Moved, change: impl FnOnce()) {
+    let read =
+        || -> Vec<u64> { unknowns.iter().map(|row| component.get_reference(*row).1.to_bits()).collect() };
+    let before = read();
+    change();
+    for ((unknown, before), after) in unknowns.iter().zip(before).zip(read()) {
+        if before != after {
+            moved.insert((component.variable(*unknown).name, component.variable(known).name));
+        }
+    }
+}
+
+#[test]
+fn initial_values_follow_from_what_is_declared() {
+    for unit in UNITS {
+        let name = unit.description.name;
+        let mut random = Pcg32::seed_from_u64(1);
+        let mut moved = Moved::new();
+        let component = Component::with_logging(Standard::Fmi3, name, false);
+        assert_eq!(component.enter_initialization(0.0, None), OK);
+        let knowns = rows(&component, |row| !row.is_calculated());
+        let unknowns = rows(&component, |row| {
+            let is_listed = matches!(row.causality, Causality::Output | Causality::CalculatedParameter);
+            is_listed || row.derivative_of.is_some()
+        });
+        for _ in 0..500 {
+            for known in &knowns {
+                let variable = component.variable(*known);
+                let base =
+                    if uniform(&mut random) < 0.4 { variable.start } else { value(variable, &mut random) };
+                assert_eq!(component.set_reference(*known, base), OK, "{}", variable.name);
+            }
+            for known in &knowns {
+                let new = value(component.variable(*known), &mut random);
+                record(&component, &unknowns, *known, &mut moved, || {
+                    assert_eq!(component.set_reference(*known, new), OK);
+                });
+            }
+        }
+        let declared: Moved = unknowns
+            .iter()
+            .flat_map(|row| {
+                let variable = component.variable(*row);
+                variable.initially_from.iter().map(|source| (variable.name, *source))
+            })
+            .collect();
+        compare(name, &moved, &declared);
+    }
+}
+
+/// Asserts that what moved is what was declared, and names the differences.
+#[track_caller]
+fn compare(unit: &str, moved: &Moved, declared: &Moved) {
+    let undeclared: Vec<_> = moved.difference(declared).collect();
+    let unmoved: Vec<_> = declared.difference(moved).collect();
+    assert!(
+        undeclared.is_empty() && unmoved.is_empty(),
+        "{unit}: undeclared {undeclared:?}, never seen {unmoved:?}"
+    );
+}
+
+/// Lets a plant start away from its stops, beyond the one at the smallest position or beyond the other.
+fn place(component: &Component, place: usize) {
+    let Some((_, row)) = component.description.find("initial.position") else { return };
+    let value = [row.start, row.range.0, row.range.1][place];
+    assert_eq!(component.set(row.name, value), OK);
+    // Too little to lift a ball, enough to hold what hangs from a magnet.
+    if let Some((_, row)) = component.description.find("initial.flux") {
+        assert_eq!(component.set(row.name, [1.0, 0.5, 1.5][place] * row.start), OK);
+    }
+}
+
+/// Continuous and held outputs and state derivatives; event indicators, too.
+fn unknowns(component: &Component) -> Vec<u32> {
+    rows(component, |row| {
+        row.causality == Causality::Output || row.derivative_of.is_some() || row.is_event_indicator
+    })
+}
+
+fn declared(component: &Component, of: impl Fn(&Variable) -> bool) -> Moved {
+    let unknowns = unknowns(component);
+    let pairs = unknowns.iter().flat_map(|row| {
+        let variable = component.variable(*row);
+        variable.depends_on.iter().map(|dependency| (variable.name, dependency.name))
+    });
+    pairs.filter(|(_, known)| of(component.description.find(known).unwrap().1)).collect()
+}
+
+#[test]
+fn at_a_communication_point_outputs_follow_from_what_is_declared() {
+    for unit in UNITS {
+        let name = unit.description.name;
+        let (mut random, mut moved) = (Pcg32::seed_from_u64(2), Moved::new());
+        let is_known = |row: &Variable| {
+            row.causality == Causality::Input
+                || row.causality == Causality::Parameter && row.variability == Variability::Tunable
+        };
+        for start in 0..3 {
+            let component = Component::with_logging(Standard::Fmi3, name, false);
+            place(&component, start);
+            component.initialise(0.0);
+            let unknowns = unknowns(&component);
+            for k in 0..40 {
+                for known in rows(&component, is_known) {
+                    let new = value(component.variable(known), &mut random);
+                    record(&component, &unknowns, known, &mut moved, || {
+                        assert_eq!(component.set_reference(known, new), OK);
+                    });
+                }
+                assert_eq!(component.step(f64::from(k) * 1e-4, 1e-4), OK);
+            }
+        }
+        let component = Component::with_logging(Standard::Fmi3, name, false);
+        compare(name, &moved, &declared(&component, is_known));
+    }
+}
+
+#[test]
+fn in_continuous_time_outputs_follow_from_what_is_declared() {
+    for (standard, unit) in plants() {
+        let (mut random, mut moved) = (Pcg32::seed_from_u64(3), Moved::new());
+        for start in 0..3 {
+            let component = Component::exchanged(standard, unit);
+            place(&component, start);
+            component.initialise(0.0);
+            component.update_discrete_states();
+            assert_eq!(component.enter_continuous_time(), OK);
+            let unknowns = unknowns(&component);
+            let begin = component.states();
+            for _ in 0..40 {
+                for (index, (state, _)) in component.description.continuous_states().enumerate() {
+                    let mut new = component.states();
+                    new[index] =
+                        begin[index] + component.nominals()[index] * (uniform(&mut random) - 0.5) * 1e-2;
+                    record(&component, &unknowns, state as u32, &mut moved, || {
+                        assert_eq!(component.set_states(&new), OK);
+                    });
+                }
+                for input in rows(&component, |row| row.causality == Causality::Input) {
+                    let new = value(component.variable(input), &mut random);
+                    record(&component, &unknowns, input, &mut moved, || {
+                        assert_eq!(component.set_reference(input, new), OK);
+                    });
+                }
+            }
+        }
+        let component = Component::exchanged(standard, unit);
+        let states: Vec<usize> = component.description.continuous_states().map(|(state, _)| state).collect();
+        let is_state = |row: &Variable| {
+            states.iter().any(|state| component.description.variables[*state].name == row.name)
+        };
+        let declared = declared(&component, |row| row.causality == Causality::Input || is_state(row));
+        compare(unit, &moved, &declared);
+    }
+}

@@ -1,0 +1,224 @@
+//! Instances for model exchange and what an importer does with them.
+
+use core::ffi::c_void;
+use std::ffi::CString;
+
+use maglev_fmu::fmi::fmi2::types::{FMI2_MODEL_EXCHANGE, fmi2CallbackFunctions, fmi2EventInfo};
+use maglev_fmu::fmi::fmi2::*;
+use maglev_fmu::fmi::fmi3::*;
+use maglev_fmu::unit::{Description, UNITS};
+
+use super::{BOTH, Component, OK, Recorder, Standard, description, fmi2_logger, fmi3_logger};
+
+/// Every combination of standard and plant.
+pub fn plants() -> impl Iterator<Item = (Standard, &'static str)> {
+    let is_plant = |description: &&Description| description.offers_model_exchange();
+    let plants = UNITS.iter().map(|unit| unit.description).filter(is_plant).map(|plant| plant.name);
+    plants.flat_map(|plant| BOTH.map(|standard| (standard, plant)))
+}
+
+impl Component {
+    /// An instance for model exchange.
+    pub fn exchanged(standard: Standard, unit: &str) -> Self {
+        let recorder = Box::new(Recorder::default());
+        let (environment, name) = (recorder.environment(), c"under test".as_ptr());
+        let token = CString::new(description(unit).token().as_str()).unwrap();
+        let functions = fmi2CallbackFunctions {
+            logger: Some(fmi2_logger()),
+            allocate_memory: None,
+            free_memory: None,
+            step_finished: None,
+            component_environment: environment,
+        };
+        let none = core::ptr::null();
+        // SAFETY: C strings and callbacks that live long enough.
+        let handle: *mut c_void = unsafe {
+            match standard {
+                Standard::Fmi2 => {
+                    fmi2Instantiate(name, FMI2_MODEL_EXCHANGE, token.as_ptr(), none, &functions, 0, 1)
+                }
+                Standard::Fmi3 => fmi3InstantiateModelExchange(
+                    name,
+                    token.as_ptr(),
+                    none,
+                    0,
+                    1,
+                    environment,
+                    Some(fmi3_logger),
+                ),
+            }
+        };
+        assert!(!handle.is_null(), "{standard:?} {unit}: {:?}", recorder.messages());
+        Self::from_handle(standard, unit, handle, recorder)
+    }
+
+    /// As [`Component::exchanged`], in continuous-time mode at t = 0.
+    pub fn in_continuous_time(standard: Standard, unit: &str) -> Self {
+        let component = Self::exchanged(standard, unit);
+        component.initialise(0.0);
+        component.update_discrete_states();
+        assert_eq!(component.enter_continuous_time(), OK);
+        component.recorder.clear();
+        component
+    }
+
+    pub fn enter_event_mode(&self) -> i32 {
+        self.plain(fmi2EnterEventMode, fmi3EnterEventMode)
+    }
+
+    pub fn enter_continuous_time(&self) -> i32 {
+        self.plain(fmi2EnterContinuousTimeMode, fmi3EnterContinuousTimeMode)
+    }
+
+    /// Whether a state jumped.
+    #[track_caller]
+    pub fn update_discrete_states(&self) -> bool {
+        // SAFETY: a live handle; all results have room.
+        unsafe {
+            match self.standard {
+                Standard::Fmi2 => {
+                    let mut info = fmi2EventInfo {
+                        new_discrete_states_needed: 7,
+                        terminate_simulation: 7,
+                        nominals_of_continuous_states_changed: 7,
+                        values_of_continuous_states_changed: 7,
+                        next_event_time_defined: 7,
+                        next_event_time: 7.0,
+                    };
+                    assert_eq!(fmi2NewDiscreteStates(self.handle, &mut info), OK);
+                    let quiet = [
+                        info.new_discrete_states_needed,
+                        info.terminate_simulation,
+                        info.nominals_of_continuous_states_changed,
+                        info.next_event_time_defined,
+                    ];
+                    assert_eq!(quiet, [0; 4]);
+                    info.values_of_continuous_states_changed != 0
+                }
+                Standard::Fmi3 => {
+                    let (mut needed, mut terminate, mut nominals, mut changed, mut defined) = (7, 7, 7, 7, 7);
+                    let status = fmi3UpdateDiscreteStates(
+                        self.handle,
+                        &mut needed,
+                        &mut terminate,
+                        &mut nominals,
+                        &mut changed,
+                        &mut defined,
+                        &mut 0.0,
+                    );
+                    assert_eq!(status, OK);
+                    assert_eq!([needed, terminate, nominals, defined], [0; 4]);
+                    changed != 0
+                }
+            }
+        }
+    }
+
+    pub fn set_time(&self, time: f64) -> i32 {
+        // SAFETY: a live handle.
+        unsafe {
+            match self.standard {
+                Standard::Fmi2 => fmi2SetTime(self.handle, time),
+                Standard::Fmi3 => fmi3SetTime(self.handle, time),
+            }
+        }
+    }
+
+    pub fn state_count(&self) -> usize {
+        self.description.continuous_states().count()
+    }
+
+    pub fn set_states(&self, states: &[f64]) -> i32 {
+        // SAFETY: a live handle, as many states as said.
+        unsafe {
+            match self.standard {
+                Standard::Fmi2 => fmi2SetContinuousStates(self.handle, states.as_ptr(), states.len()),
+                Standard::Fmi3 => fmi3SetContinuousStates(self.handle, states.as_ptr(), states.len()),
+            }
+        }
+    }
+
+    #[track_caller]
+    pub fn states(&self) -> Vec<f64> {
+        self.vector(self.state_count(), fmi2GetContinuousStates, fmi3GetContinuousStates)
+    }
+
+    #[track_caller]
+    pub fn derivatives(&self) -> Vec<f64> {
+        self.vector(self.state_count(), fmi2GetDerivatives, fmi3GetContinuousStateDerivatives)
+    }
+
+    #[track_caller]
+    pub fn event_indicators(&self) -> Vec<f64> {
+        let count = self.description.event_indicators().count();
+        self.vector(count, fmi2GetEventIndicators, fmi3GetEventIndicators)
+    }
+
+    #[track_caller]
+    pub fn nominals(&self) -> Vec<f64> {
+        self.vector(self.state_count(), fmi2GetNominalsOfContinuousStates, fmi3GetNominalsOfContinuousStates)
+    }
+
+    #[track_caller]
+    fn vector(
+        &self,
+        count: usize,
+        fmi2: unsafe extern "C" fn(*mut c_void, *mut f64, usize) -> i32,
+        fmi3: unsafe extern "C" fn(*mut c_void, *mut f64, usize) -> i32,
+    ) -> Vec<f64> {
+        let mut values = vec![f64::NAN; count];
+        let function = if self.standard == Standard::Fmi2 { fmi2 } else { fmi3 };
+        // SAFETY: a live handle, as much room as said.
+        let status = unsafe { function(self.handle, values.as_mut_ptr(), count) };
+        assert_eq!(status, OK, "{:?}", self.recorder.messages());
+        values
+    }
+
+    /// How `unknowns` move when `knowns` move along `seed`.
+    pub fn directional(
+        &self,
+        unknowns: &[u32],
+        knowns: &[u32],
+        seed: &[f64],
+        sensitivity: &mut [f64],
+    ) -> i32 {
+        let (u, k, s) = (unknowns.as_ptr(), knowns.as_ptr(), seed.as_ptr());
+        let (nu, nk, result) = (unknowns.len(), knowns.len(), sensitivity.as_mut_ptr());
+        assert_eq!((seed.len(), sensitivity.len()), (nk, nu));
+        // SAFETY: a live handle, arrays of these lengths.
+        unsafe {
+            match self.standard {
+                Standard::Fmi2 => fmi2GetDirectionalDerivative(self.handle, u, nu, k, nk, s, result),
+                Standard::Fmi3 => fmi3GetDirectionalDerivative(self.handle, u, nu, k, nk, s, nk, result, nu),
+            }
+        }
+    }
+
+    /// Partial derivative of one variable with respect to another.
+    #[track_caller]
+    pub fn partial(&self, unknown: u32, known: u32) -> f64 {
+        let mut result = [f64::NAN];
+        let status = self.directional(&[unknown], &[known], &[1.0], &mut result);
+        assert_eq!(status, OK, "{:?}", self.recorder.messages());
+        result[0]
+    }
+
+    /// Slope of an output at the end of the last step.
+    #[track_caller]
+    pub fn output_slope(&self, output: u32) -> f64 {
+        let mut result = [f64::NAN];
+        // SAFETY: a live handle, arrays of one element.
+        let status = unsafe {
+            match self.standard {
+                Standard::Fmi2 => {
+                    fmi2GetRealOutputDerivatives(self.handle, &output, 1, &1, result.as_mut_ptr())
+                }
+                Standard::Fmi3 => {
+                    fmi3GetOutputDerivatives(self.handle, &output, 1, &1, result.as_mut_ptr(), 1)
+                }
+            }
+        };
+        assert_eq!(status, OK, "{:?}", self.recorder.messages());
+        result[0]
+    }
+}
