@@ -11,7 +11,7 @@ use maglev_fmu::fmi::fmi2::{
     fmi2DoStep, fmi2EnterInitializationMode, fmi2ExitInitializationMode, fmi2FreeInstance, fmi2GetReal,
     fmi2Reset, fmi2SetReal,
 };
-use maglev_fmu::fmi::{Callback, Instance, Logger};
+use maglev_fmu::fmi::{Callback, Instance, Interface, Logger};
 use maglev_fmu::signal::BallReference;
 use maglev_fmu::unit::{LevitatedBallController, LevitatedBallPlant, Silence, Unit};
 use measure::{Candidate, medians, verdict};
@@ -85,7 +85,8 @@ impl Component {
         let inputs = inputs.map(|name| reference(&unit, name) as u32);
         let outputs = outputs.map(|name| reference(&unit, name) as u32);
         // Reset goes back to the unit as given here.
-        let instance = Instance::new(Box::new(unit), Logger::new(Callback::None, c"bench".into(), false));
+        let logger = Logger::new(Callback::None, c"bench".into(), false);
+        let instance = Instance::new(Box::new(unit), Interface::CoSimulation, logger);
         Self { handle: Box::into_raw(Box::new(instance)).cast(), inputs, outputs }
     }
 

@@ -11,7 +11,7 @@ use maglev_fmu::fmi::fmi2::{
     fmi2DoStep, fmi2EnterInitializationMode, fmi2ExitInitializationMode, fmi2FreeInstance, fmi2GetReal,
     fmi2Reset, fmi2SetReal,
 };
-use maglev_fmu::fmi::{Callback, Instance, Logger};
+use maglev_fmu::fmi::{Callback, Instance, Interface, Logger};
 use maglev_fmu::observer::extended_state::{
     ExtendedState, ExtendedStateModel, Injection, LinearInjection, NonlinearInjection, gains_from_bandwidth,
 };
@@ -91,7 +91,11 @@ impl Component {
         let inputs = inputs.map(|name| reference(&unit, name));
         let outputs = outputs.map(|name| reference(&unit, name));
         // Reset goes back to the unit as given here.
-        let instance = Instance::new(Box::new(unit), Logger::new(Callback::None, c"bench".into(), false));
+        let instance = Instance::new(
+            Box::new(unit),
+            Interface::CoSimulation,
+            Logger::new(Callback::None, c"bench".into(), false),
+        );
         let handle = Box::into_raw(Box::new(instance)).cast();
         Self { handle, inputs, outputs }
     }

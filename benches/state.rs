@@ -15,6 +15,9 @@ use maglev_fmu::fmi::{Callback, Instance, Interface, LONGEST_SAVED_STATE, Logger
 use maglev_fmu::unit::{MAGNETIC_BEARING_CONTROLLER, UNITS, UnitType};
 use measure::{Candidate, medians, verdict};
 
+/// What one call does.
+type Work = Box<dyn FnMut()>;
+
 const CALLS: usize = 2000;
 const ROUNDS: usize = 51;
 
@@ -109,7 +112,7 @@ fn main() {
         let (mut saved, saved_anew, restored) = (subject(), subject(), subject());
         let (mut serialised, mut deserialised) = (subject(), subject());
         let size = saved.bytes.len() as f64;
-        let works: [(&str, Box<dyn FnMut()>); 5] = [
+        let works: [(&str, Work); 5] = [
             ("save", Box::new(repeated(move || saved.save()))),
             ("save to new memory and free", Box::new(repeated(move || saved_anew.save_and_free()))),
             ("restore", Box::new(repeated(move || restored.restore()))),

@@ -26,7 +26,8 @@ impl Variable<'_> {
 }
 
 fn variables(root: &Element) -> Vec<Variable<'_>> {
-    let elements = root.child("ModelVariables").children.iter();
+    // Clocks have a test of their own.
+    let elements = root.child("ModelVariables").children.iter().filter(|element| element.name != "Clock");
     elements
         .map(|head| {
             let value = if head.name == "ScalarVariable" { &head.children[0] } else { head };
@@ -227,6 +228,48 @@ fn variables_are_the_rows_of_the_table() {
 }
 
 #[test]
+fn sampled_units_have_two_clocks_and_may_be_scheduled() {
+    check_all(|description, version, root| {
+        let elements = root.child("ModelVariables").children.iter();
+        let clocks: Vec<_> = elements.filter(|element| element.name == "Clock").collect();
+        let scheduled = root.children_named("ScheduledExecution").count();
+        let intermediate = variables(root)
+            .iter()
+            .filter(|variable| variable.head.attribute("intermediateUpdate") == Some("true"))
+            .map(|variable| (variable.head.attribute("causality"), variable.head.attribute("variability")))
+            .collect::<BTreeSet<_>>();
+        if version == FmiVersion::Two || !description.is_sampled() {
+            assert_eq!((clocks.len(), scheduled, intermediate.len()), (0, 0, 0));
+            return;
+        }
+        // Within a step only continuous inputs may be set, and nothing that is discrete may be asked for.
+        assert_eq!(intermediate, BTreeSet::from([(Some("input"), Some("continuous"))]));
+        assert_eq!(scheduled, 1);
+        let identifier = root.child("ScheduledExecution").attribute("modelIdentifier");
+        assert_eq!(identifier, Some(description.name));
+        let expected = [
+            [Some("tick"), Some("input"), Some("fixed"), Some("0"), Some("true")],
+            [Some("ticked"), Some("output"), Some("triggered"), None, None],
+        ];
+        assert_eq!(clocks.len(), expected.len());
+        for (index, (clock, expected)) in clocks.iter().zip(expected).enumerate() {
+            let names = ["name", "causality", "intervalVariability", "priority", "supportsFraction"];
+            assert_eq!(names.map(|name| clock.attribute(name)), expected);
+            let reference = (description.variables.len() + index).to_string();
+            assert_eq!(clock.attribute("valueReference"), Some(reference.as_str()));
+            assert_eq!(clock.attribute("variability"), Some("discrete"));
+            // The interval is to be asked for: it follows from a parameter.
+            assert_eq!(clock.attribute("intervalDecimal"), None);
+        }
+        // Outputs can be read outside of ticks.
+        assert!(variables(root).iter().all(|variable| variable.head.attribute("clocks").is_none()));
+        let output = root.child("ModelStructure").children_named("Output").last().unwrap();
+        assert_eq!(output.attribute("valueReference"), clocks[1].attribute("valueReference"));
+        assert_eq!(output.attribute("dependencies"), clocks[0].attribute("valueReference"));
+    });
+}
+
+#[test]
 fn start_and_initial_follow_from_the_causality() {
     check_all(|_, _, root| {
         let mut independent = 0;
@@ -344,7 +387,7 @@ fn types_and_units_are_defined_and_used() {
 fn structure_lists_outputs_and_initial_unknowns_exactly() {
     check_all(|description, version, root| {
         let structure = root.child("ModelStructure");
-        let (outputs, unknowns, key, offset): (Vec<&Element>, Vec<&Element>, _, _) = match version {
+        let (mut outputs, mut unknowns, key, offset): (Vec<&Element>, Vec<&Element>, _, _) = match version {
             FmiVersion::Two => (
                 structure.child("Outputs").children.iter().collect(),
                 structure.child("InitialUnknowns").children.iter().collect(),
@@ -359,6 +402,13 @@ fn structure_lists_outputs_and_initial_unknowns_exactly() {
             ),
         };
         let row = |text: &str| text.parse::<usize>().unwrap() - offset;
+        // The clock that the unit activates is an output, too; it has nothing to do with what follows.
+        for elements in [&mut outputs, &mut unknowns] {
+            let count = elements.len();
+            elements.retain(|element| row(element.attribute(key).unwrap()) < description.variables.len());
+            let clocks = version == FmiVersion::Three && description.is_sampled();
+            assert_eq!(count - elements.len(), usize::from(clocks));
+        }
         let rows = |elements: &[&Element]| -> Vec<usize> {
             elements.iter().map(|element| row(element.attribute(key).unwrap())).collect()
         };

@@ -7,6 +7,8 @@ use crate::unit::variable::{Causality, Kind, Variability, Variable};
 pub(super) struct DataType {
     pub name: &'static str,
     pub carries: fn(&Kind) -> bool,
+    /// Whether the standard has clocks, too.
+    pub has_clocks: bool,
 }
 
 impl Instance {
@@ -72,10 +74,28 @@ impl Instance {
         Ok(())
     }
 
+    /// Why there is no variable with this value reference.
+    #[cold]
+    fn no_variable(&self, data_type: &DataType, reference: u32) -> CallError {
+        if !data_type.has_clocks {
+            return CallError::UnknownReference { reference, largest: self.variables.len() - 1 };
+        }
+        let mut clocks = self.unit.description().clocks();
+        match clocks.find(|(known, _)| *known == reference as usize) {
+            Some((_, clock)) => CallError::IsClock { name: clock.name, reference, asked: data_type.name },
+            None => self.unknown_reference(reference),
+        }
+    }
+
+    pub(super) fn unknown_reference(&self, reference: u32) -> CallError {
+        let clocks = self.unit.description().clocks().count();
+        CallError::UnknownReference { reference, largest: self.variables.len() + clocks - 1 }
+    }
+
     #[inline]
     fn find(&self, data_type: &DataType, reference: u32) -> Result<&'static Variable, CallError> {
         let Some(variable) = self.variables.get(reference as usize) else {
-            return Err(CallError::UnknownReference { reference, largest: self.variables.len() - 1 });
+            return Err(self.no_variable(data_type, reference));
         };
         if (data_type.carries)(&variable.kind) {
             return Ok(variable);
@@ -95,11 +115,12 @@ impl Instance {
 
     /// Before the first step parameters and inputs may be set, afterwards inputs and tunable parameters. An importer
     /// that integrates the unit may set continuous inputs and states in continuous time, and at an event also states
-    /// that do not jump (FMI 3.0.2, section 2.3.5).
+    /// that do not jump (FMI 3.0.2, section 2.3.5). Within a step continuous inputs may be set, too.
     #[inline]
     fn require_settable(&self, reference: u32, variable: &Variable) -> Result<(), CallError> {
         let is_initial = matches!(self.phase, Phase::Instantiated | Phase::InitializationMode);
-        let is_continuous_time = self.phase == Phase::ContinuousTimeMode;
+        let is_continuous_time =
+            matches!(self.phase, Phase::ContinuousTimeMode | Phase::IntermediateUpdateMode);
         let why = match (variable.causality, variable.variability) {
             (Causality::Input, Variability::Continuous) => return Ok(()),
             (Causality::Input, _) | (Causality::Parameter, Variability::Tunable) if !is_continuous_time => {

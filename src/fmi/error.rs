@@ -30,6 +30,22 @@ pub enum CallError {
     TimeDoesNotFollow { got: f64, expected: f64 },
     #[error(transparent)]
     Unit(#[from] UnitError),
+    #[error("{name} (value reference {reference}) is a variable, not a clock")]
+    NoClock { name: &'static str, reference: u32 },
+    #[error("{name} (value reference {reference}) is a clock, not {asked}")]
+    IsClock { name: &'static str, reference: u32, asked: &'static str },
+    #[error("no tick is due at t = {now} s: expected t = {next} s")]
+    NoTick { now: f64, next: f64 },
+    #[error("a clock that was activated stays active until the end of the event iteration")]
+    ClockStaysActive,
+    #[error("activationTime = {got} s: expected a finite time after {last} s")]
+    ActivationTime { got: f64, last: f64 },
+    #[error(
+        "{name} = {value} has no exact fraction of 64-bit numbers: expected a number of seconds such as 0.001"
+    )]
+    NoFraction { name: &'static str, value: f64 },
+    #[error(transparent)]
+    State(#[from] StateError),
     #[error("not a function of {0}, for which the instance was made")]
     WrongInterface(&'static str),
     #[error("{name} cannot be computed here: {value} {unit}")]
@@ -40,8 +56,6 @@ pub enum CallError {
     WrongOrder { name: &'static str, order: i32 },
     #[error("continuous state {0}")]
     StateRejected(ValueError),
-    #[error(transparent)]
-    State(#[from] StateError),
     #[error("category number {0} is not declared in the model description: expected one of {categories}", categories = super::log::CategoryList)]
     UnknownCategory(usize),
     #[error("not offered by this unit: {0}")]

@@ -3,10 +3,13 @@
 use core::ffi::CStr;
 use core::fmt;
 
+use super::fmi3::types::{fmi3ClockUpdateCallback, fmi3InstanceEnvironment};
+use super::intermediate_update::{IntermediateUpdate, StepInProgress};
 use super::saved_state::Life;
+use super::ticking::ClockStates;
 use super::{CallError, Callback, CommunicationPoint, Function, Interface, Logger, Phase};
 use crate::unit::variable::Variable;
-use crate::unit::{ContinuousRows, Journal, TIME, Topic, UNITS, Unit};
+use crate::unit::{ContinuousRows, Description, Journal, TIME, Topic, UNITS, Unit};
 
 /// What a handle (`fmi2Component`, `fmi3Instance`) points to.
 pub struct Instance {
@@ -20,11 +23,18 @@ pub struct Instance {
     pub(super) phase: Phase,
     pub(super) logger: Logger,
     pub(super) communication: CommunicationPoint,
-    start_time: f64,
+    pub(super) start_time: f64,
     /// Whether a value was set since the calculated ones were last computed, before the first step.
     pub(super) is_stale: bool,
     /// Whether a state or an input was set since what follows from them was last computed, after initialisation.
     pub(super) needs_evaluation: bool,
+    pub(super) clocks: ClockStates,
+    /// How the importer wants to be called back within a step.
+    pub(super) intermediate_update: Option<IntermediateUpdate>,
+    /// The step within which it is called back.
+    pub(super) step: Option<StepInProgress>,
+    /// How a scheduler wants to be told of the clock `ticked`.
+    pub(super) clock_update: Option<(fmi3ClockUpdateCallback, fmi3InstanceEnvironment)>,
 }
 
 impl Instance {
@@ -42,6 +52,10 @@ impl Instance {
             start_time: 0.0,
             is_stale: true,
             needs_evaluation: false,
+            clocks: ClockStates::default(),
+            intermediate_update: None,
+            step: None,
+            clock_update: None,
         }
     }
 
@@ -135,6 +149,7 @@ impl Instance {
         self.start_time = 0.0;
         self.communication = CommunicationPoint::new(0.0);
         self.is_stale = true;
+        self.clocks = ClockStates::default();
         self.needs_evaluation = false;
         self.note(format_args!("reset"));
         Ok(())
@@ -147,18 +162,19 @@ impl Instance {
 
     /// What a saved state has to tell besides the unit.
     pub(super) fn life(&self) -> Life {
-        let Self { phase, communication, start_time, is_stale, .. } = *self;
-        Life { phase, communication, start_time, is_stale }
+        let Self { phase, communication, start_time, is_stale, needs_evaluation, clocks, .. } = *self;
+        Life { phase, communication, start_time, is_stale, needs_evaluation, clocks }
     }
 
     /// Goes on from a saved state; the unit has been restored.
     pub(super) fn resume(&mut self, life: Life) {
-        let Life { phase, communication, start_time, is_stale } = life;
+        let Life { phase, communication, start_time, is_stale, needs_evaluation, clocks } = life;
         self.phase = phase;
         self.communication = communication;
         self.start_time = start_time;
         self.is_stale = is_stale;
-        self.needs_evaluation = !is_stale;
+        self.needs_evaluation = needs_evaluation;
+        self.clocks = clocks;
     }
 
     pub(super) fn note(&mut self, message: fmt::Arguments<'_>) {
@@ -192,12 +208,25 @@ pub(super) fn instantiate(
     };
     if !interface.is_offered_by(unit.description) {
         let (name, asked) = (unit.description.name, interface.name());
-        logger.error(format_args!("{function}: {name} does not offer {asked}, only co-simulation"));
+        let offered = Offered(unit.description);
+        logger.error(format_args!("{function}: {name} does not offer {asked}, only {offered}"));
         return None;
     }
     let mut instance = Instance::new((unit.create)(), interface, logger);
     instance.note(format_args!("{} instantiated", unit.description.name));
     Some(instance)
+}
+
+/// The interface types of a unit, for an error message.
+struct Offered(&'static Description);
+
+impl fmt::Display for Offered {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let offered = Interface::ALL.iter().filter(|interface| interface.is_offered_by(self.0));
+        offered.enumerate().try_for_each(|(index, interface)| {
+            write!(formatter, "{}{}", if index == 0 { "" } else { ", " }, interface.name())
+        })
+    }
 }
 
 /// All units with their tokens, for an error message.

@@ -21,22 +21,17 @@ impl Instance {
     }
 
     /// Readings are taken with the inputs that the importer set last, the left limit at the event.
-    pub(super) fn enter_event_mode(&mut self) -> Result<(), CallError> {
-        if self.interface != Interface::ModelExchange {
-            return Err(CallError::NotOffered("event mode"));
-        }
+    pub(super) fn enter_event_of_integration(&mut self) -> Result<(), CallError> {
         let comes_from_continuous_time = self.phase == Phase::ContinuousTimeMode;
         let unit = self.exchanged()?;
         if comes_from_continuous_time {
             unit.enter_event();
         }
-        self.phase = Phase::EventMode;
         Ok(())
     }
 
-    /// Discrete transitions; whether a continuous state jumped. One call settles them all, and there are no time
-    /// events.
-    pub(super) fn update_discrete_states(&mut self) -> Result<bool, CallError> {
+    /// Discrete transitions; whether a continuous state jumped. One call settles them all.
+    pub(super) fn update_states_of_integration(&mut self) -> Result<bool, CallError> {
         let have_states_changed = self.exchanged()?.update_discrete_states();
         self.needs_evaluation = true;
         Ok(have_states_changed)

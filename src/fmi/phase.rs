@@ -20,6 +20,8 @@ pub enum Phase {
     IntermediateUpdateMode = 1 << 10,
     ClockActivationMode = 1 << 11,
     Terminated = 1 << 12,
+    /// Within the callback `fmi3ClockUpdateCallback`.
+    ClockUpdateMode = 1 << 14,
     /// After a panic: only to be freed.
     Fatal = 1 << 13,
 }
@@ -40,6 +42,7 @@ impl Phase {
             Self::ReconfigurationMode => "reconfiguration mode",
             Self::IntermediateUpdateMode => "intermediate update mode",
             Self::ClockActivationMode => "clock activation mode",
+            Self::ClockUpdateMode => "clock update mode",
             Self::Terminated => "terminated",
             Self::Fatal => "fatal error",
         }

@@ -15,6 +15,7 @@
 //! 58  n   payload
 //! ```
 
+use super::ticking::ClockStates;
 use super::{CommunicationPoint, Instance, Phase};
 use crate::unit::persistence::PersistenceError;
 use crate::unit::{Description, UNITS};
@@ -88,6 +89,9 @@ pub(super) struct Life {
     pub start_time: f64,
     /// See [`Instance`].
     pub is_stale: bool,
+    /// See [`Instance`].
+    pub needs_evaluation: bool,
+    pub clocks: ClockStates,
 }
 
 impl Life {

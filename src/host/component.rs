@@ -57,6 +57,10 @@ pub(super) trait Component: Send {
     fn set_state(&mut self, state: *mut c_void) -> Answer;
     /// `state` came from `get_state` of this component and was not freed.
     fn free_state(&mut self, state: *mut c_void) -> Answer;
+    /// `state` came from this component and was not freed.
+    fn serialise_state(&mut self, state: *mut c_void) -> Answer<Vec<u8>>;
+    /// The result is a state as from `get_state`.
+    fn deserialise_state(&mut self, bytes: &[u8]) -> Answer<*mut c_void>;
 }
 
 /// Conversion between `f64` and a C number, refused where it would not be exact.

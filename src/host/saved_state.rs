@@ -55,6 +55,29 @@ impl Instance {
         self.explain(answer, Subject::none)
     }
 
+    /// A saved state as bytes, which outlive the instance and the process.
+    ///
+    /// # Errors
+    /// As [`Instance::restore_state`].
+    pub fn serialise_state(&mut self, saved: &SavedState) -> Result<Vec<u8>> {
+        self.usable()?;
+        self.owns(saved)?;
+        let answer = self.component.serialise_state(saved.state);
+        self.explain(answer, Subject::none)
+    }
+
+    /// A state from bytes that an instance of the same unit has serialised.
+    ///
+    /// # Errors
+    /// As [`Instance::save_state`].
+    pub fn deserialise_state(&mut self, bytes: &[u8]) -> Result<SavedState> {
+        self.usable()?;
+        let answer = self.component.deserialise_state(bytes);
+        let state = self.explain(answer, Subject::none)?;
+        self.may_go_back = true;
+        Ok(SavedState { state, owner: self.identity })
+    }
+
     fn owns(&self, saved: &SavedState) -> Result<()> {
         if saved.owner == self.identity {
             return Ok(());

@@ -37,6 +37,8 @@ pub struct Capabilities {
     pub has_event_mode: bool,
     /// FMI 3.0: `fmi3EvaluateDiscreteStates` works.
     pub provides_evaluate_discrete_states: bool,
+    /// FMI 3.0: the importer may make the unit tick by activating its model partition.
+    pub offers_scheduled_execution: bool,
 }
 
 impl Capabilities {
@@ -66,6 +68,7 @@ const EVERY_UNIT: Capabilities = Capabilities {
     can_return_early_after_intermediate_update: false,
     has_event_mode: false,
     provides_evaluate_discrete_states: false,
+    offers_scheduled_execution: false,
 };
 
 /// Plants move in continuous time.
@@ -77,9 +80,17 @@ const PLANT: Capabilities = Capabilities {
     ..EVERY_UNIT
 };
 
-/// Controllers act at their ticks. In between all outputs are held: at a communication point they depend on no input,
-/// as their empty dependencies say, and derivatives would all be zero.
-const CONTROLLER: Capabilities = Capabilities { ..EVERY_UNIT };
+/// Controllers act at their ticks: an importer may handle these as events, end steps at them, or schedule them. In
+/// between all outputs are held: at a communication point they depend on no input, as their empty dependencies say,
+/// and derivatives would all be zero.
+const CONTROLLER: Capabilities = Capabilities {
+    provides_intermediate_update: true,
+    might_return_early_from_do_step: true,
+    can_return_early_after_intermediate_update: true,
+    has_event_mode: true,
+    offers_scheduled_execution: true,
+    ..EVERY_UNIT
+};
 
 // Flags that the standards allow only together with another.
 const fn is_consistent(can: &Capabilities) -> bool {

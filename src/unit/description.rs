@@ -71,6 +71,9 @@ impl Description {
                 hash.add_bytes(&number.to_bits().to_le_bytes());
             }
         }
+        for (_, clock) in self.clocks() {
+            hash.add(clock.name);
+        }
         Token::from_bits(hash.0)
     }
 }

@@ -16,6 +16,7 @@ mod magnetic_bearing_plant;
 pub mod persistence;
 pub mod quantity;
 pub mod sample_clock;
+pub mod sampled;
 pub mod system;
 pub mod value;
 pub mod variable;
@@ -31,6 +32,7 @@ pub use maglev_rig_plant::MaglevRigPlant;
 pub use magnetic_bearing_controller::MagneticBearingController;
 pub use magnetic_bearing_plant::MagneticBearingPlant;
 pub use persistence::Persistent;
+pub use sampled::SampledUnit;
 pub use system::System;
 use thiserror::Error;
 
@@ -97,6 +99,11 @@ pub trait Unit: Persistent + Send {
 
     /// Lets `duration` \[s\], positive and finite, pass with the present inputs held.
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError>;
+
+    /// The unit as one that acts at ticks, if it is: exactly those are whose description says so.
+    fn sampled(&mut self) -> Option<&mut dyn SampledUnit> {
+        None
+    }
 
     /// The unit as one that an importer may integrate, if it is.
     fn continuous(&mut self) -> Option<&mut dyn ContinuousUnit> {
@@ -192,7 +199,9 @@ mod tests {
                     );
                 }
             }
-            assert_eq!((unit.create)().values().len(), variables.len());
+            let mut made = (unit.create)();
+            assert_eq!(made.values().len(), variables.len());
+            assert_eq!(made.sampled().is_some(), unit.description.is_sampled(), "{}", unit.description.name);
         }
     }
 

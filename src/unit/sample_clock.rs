@@ -34,13 +34,7 @@ impl SampleClock {
     /// Lets `duration` \[s\] pass and returns the numbers of the ticks in it, its start included, its end not.
     #[inline]
     pub fn advance(&mut self, duration: f64) -> core::ops::Range<i64> {
-        // Two-sum of Knuth: `sum + error` is exactly `large + addend`.
-        let (large, small) = self.elapsed;
-        let addend = duration + small;
-        let sum = large + addend;
-        let virtual_addend = sum - large;
-        let error = (large - (sum - virtual_addend)) + (addend - virtual_addend);
-        self.elapsed = (sum, error);
+        self.pass(duration);
         let first = self.next;
         self.next = self.first_tick_not_before_now().max(first);
         first..self.next
@@ -57,6 +51,65 @@ impl SampleClock {
         }
         *self = clock;
         Ok(ticks)
+    }
+
+    /// Lets `duration` \[s\] pass and leaves the ticks in it to the caller, who takes them one by one.
+    #[inline]
+    pub fn pass(&mut self, duration: f64) {
+        // Two-sum of Knuth: `sum + error` is exactly `large + addend`.
+        let (large, small) = self.elapsed;
+        let addend = duration + small;
+        let sum = large + addend;
+        let virtual_addend = sum - large;
+        let error = (large - (sum - virtual_addend)) + (addend - virtual_addend);
+        self.elapsed = (sum, error);
+    }
+
+    /// Moves to `time` \[s\], however far away: somebody else decides about time.
+    pub fn stand_at(&mut self, time: f64) {
+        self.elapsed = (time, 0.0);
+    }
+
+    /// \[s\]
+    pub fn period(&self) -> f64 {
+        self.period
+    }
+
+    /// Time of the next tick \[s\].
+    pub fn next_time(&self) -> f64 {
+        self.time_of(self.next)
+    }
+
+    /// Whether the next tick is at the present time, or before it.
+    pub fn is_due(&self) -> bool {
+        let periods = (self.elapsed.0 + self.elapsed.1) / self.period;
+        self.next as f64 <= periods + tolerance(periods)
+    }
+
+    /// Time until the next tick \[s\], 0 if it is due, provided that [`SampleClock::advance`] would tick within
+    /// `duration` \[s\].
+    pub fn until_tick_within(&self, duration: f64) -> Option<f64> {
+        let mut clock = *self;
+        if clock.advance(duration).is_empty() {
+            return None;
+        }
+        let remaining = (self.next_time() - self.elapsed.0) - self.elapsed.1;
+        Some(if self.is_due() { 0.0 } else { remaining.max(0.0).min(duration) })
+    }
+
+    /// Counts the next tick and returns its time \[s\].
+    pub fn take(&mut self) -> f64 {
+        let time = self.next_time();
+        self.next = self.next.saturating_add(1);
+        time
+    }
+
+    /// Counts the tick that somebody calls for at `time` \[s\] and returns its own time: a multiple of the period if
+    /// that is what `time` means, else `time` itself.
+    pub fn take_at(&mut self, time: f64) -> f64 {
+        self.stand_at(time);
+        self.next = self.first_tick_not_before_now();
+        if self.is_due() { self.take() } else { time }
     }
 
     /// Whether a clock with this `period` \[s\] can stand here; false for numbers that no clock ever has.
@@ -77,14 +130,19 @@ impl SampleClock {
     #[inline]
     fn first_tick_not_before_now(&self) -> i64 {
         let periods = (self.elapsed.0 + self.elapsed.1) / self.period;
-        // The quotient itself is only good to some last digits; this matters beyond 1e9 periods.
-        let tolerance = TOLERANCE.max(8.0 * f64::EPSILON * periods.abs());
         // Beyond the range of numbers the tolerance is as large as what it is taken from.
-        let bound = if periods.is_finite() { periods - tolerance } else { periods };
+        let bound = if periods.is_finite() { periods - tolerance(periods) } else { periods };
         // Rounds up; the casts saturate, and 2^63 ticks are out of reach.
         let below = bound as i64;
         if (below as f64) < bound { below.saturating_add(1) } else { below }
     }
+}
+
+/// Periods by which a point in time, given in `periods`, may miss a tick and still mean it.
+#[inline]
+fn tolerance(periods: f64) -> f64 {
+    // The quotient itself is only good to some last digits; this matters beyond 1e9 periods.
+    TOLERANCE.max(8.0 * f64::EPSILON * periods.abs())
 }
 
 #[cfg(test)]
@@ -99,6 +157,54 @@ mod tests {
         assert_eq!(clock.advance(0.5e-3), 1..1);
         assert_eq!(clock.advance(3.7e-3), 1..5);
         assert_eq!(SampleClock::new(1e-3, 0.0025).advance(1e-3), 3..4);
+    }
+
+    #[test]
+    fn ticks_taken_one_by_one_are_those_of_whole_steps() {
+        for step in [1e-3, 2.5e-4, 3.7e-3, 1.0 / 60.0, 0.0009999999999999998] {
+            let (mut whole, mut single) = (SampleClock::new(1e-3, 0.0), SampleClock::new(1e-3, 0.0));
+            let (mut expected, mut taken) = (Vec::new(), Vec::new());
+            for _ in 0..500 {
+                expected.extend(whole.advance(step).map(|k| whole.time_of(k)));
+                let mut rest = step;
+                while let Some(wait) = single.until_tick_within(rest) {
+                    single.pass(wait);
+                    assert!(single.is_due());
+                    taken.push(single.take());
+                    rest -= wait;
+                    if rest <= 0.0 {
+                        break;
+                    }
+                }
+                single.pass(rest);
+            }
+            assert_eq!(taken, expected, "{step}");
+        }
+    }
+
+    #[test]
+    fn a_tick_is_due_from_its_time_on() {
+        let mut clock = SampleClock::new(1e-3, 0.0);
+        assert!(clock.is_due());
+        assert_eq!(clock.until_tick_within(1e-3), Some(0.0));
+        assert_eq!(clock.take(), 0.0);
+        assert!(!clock.is_due());
+        // The end of an interval does not belong to it.
+        assert_eq!(clock.until_tick_within(1e-3), None);
+        assert_eq!(clock.until_tick_within(2e-3), Some(1e-3));
+        clock.pass(0.000_999_999_999);
+        assert!(clock.is_due(), "rounded");
+        assert_eq!(clock.next_time(), 1e-3);
+    }
+
+    #[test]
+    fn a_tick_on_call_snaps_to_the_grid_it_means() {
+        let mut clock = SampleClock::new(1e-3, 0.0);
+        assert_eq!(clock.take_at(0.0), 0.0);
+        assert_eq!(clock.take_at(1e-3 + 1e-12), 1e-3);
+        assert_eq!(clock.take_at(0.0015), 0.0015);
+        assert_eq!(clock.take_at(0.0019999999999), 0.002);
+        assert!(clock.may_stand_where_it_does(1e-3));
     }
 
     #[test]

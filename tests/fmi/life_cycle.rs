@@ -11,10 +11,10 @@ pub enum Outcome {
     Works,
     /// An optional function: Error, with the capability that is missing.
     NotOffered,
-    /// Works for the plants; what moves at ticks only does not offer it.
-    PlantsOnly,
     /// Error for this reason, since the table has no argument that would do.
     Refuses(&'static str),
+    /// Works for the plants; what moves at ticks only does not offer it.
+    PlantsOnly,
     /// FMI 2.0: "If a status is required which cannot be retrieved by the slave it returns fmi2Discard."
     Discards,
 }

@@ -25,7 +25,7 @@ pub unsafe extern "C" fn fmi2NewDiscreteStates(
     // SAFETY: the caller's promise.
     unsafe {
         enter(component, &may::NEW_DISCRETE_STATES, |instance| {
-            let have_states_changed = instance.update_discrete_states()?;
+            let have_states_changed = instance.update_discrete_states()?.have_states_changed;
             report(
                 event_info,
                 fmi2EventInfo {

@@ -7,13 +7,16 @@ use crate::fmi::access::DataType;
 use crate::fmi::boundary::{enter, input, output};
 use crate::unit::variable::Kind;
 
-const REAL: DataType = DataType { name: "a Real", carries: |kind| matches!(kind, Kind::Real(_)) };
+const REAL: DataType =
+    DataType { name: "a Real", carries: |kind| matches!(kind, Kind::Real(_)), has_clocks: false };
 const INTEGER: DataType = DataType {
     name: "an Integer or Enumeration",
     carries: |kind| matches!(kind, Kind::Integer | Kind::Enumeration(_)),
+    has_clocks: false,
 };
-const BOOLEAN: DataType = DataType { name: "a Boolean", carries: |kind| matches!(kind, Kind::Boolean) };
-const STRING: DataType = DataType { name: "a String", carries: |_| false };
+const BOOLEAN: DataType =
+    DataType { name: "a Boolean", carries: |kind| matches!(kind, Kind::Boolean), has_clocks: false };
+const STRING: DataType = DataType { name: "a String", carries: |_| false, has_clocks: false };
 
 /// A getter and a setter of one data type.
 macro_rules! accessors {

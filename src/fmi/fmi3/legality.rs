@@ -3,8 +3,8 @@
 
 use crate::fmi::Function;
 use crate::fmi::Phase::{
-    self, ClockActivationMode, ConfigurationMode, ContinuousTimeMode, EventMode, InitializationMode,
-    Instantiated, IntermediateUpdateMode, ReconfigurationMode, StepMode, Terminated,
+    self, ClockActivationMode, ClockUpdateMode, ConfigurationMode, ContinuousTimeMode, EventMode,
+    InitializationMode, Instantiated, IntermediateUpdateMode, ReconfigurationMode, StepMode, Terminated,
 };
 
 /// Super state "FMU State Settable".
@@ -52,8 +52,9 @@ const WRITABLE_DISCRETE: &[Phase] = &[
     ClockActivationMode,
 ];
 const INITIALIZED: &[Phase] = &[EventMode, ContinuousTimeMode, StepMode, ClockActivationMode];
-/// Clocks tick in Event Mode and during their activation only, never in Step Mode.
-const CLOCKED: &[Phase] = &[EventMode, ClockActivationMode];
+/// Clocks tick in Event Mode and around their activation only, never in Step Mode. Clock Update Mode is for importers
+/// that want to be called back; those that do not may ask after the activation.
+const CLOCKED: &[Phase] = &[EventMode, ClockActivationMode, ClockUpdateMode];
 const SCHEDULABLE: &[Phase] = &[InitializationMode, EventMode, ClockActivationMode];
 const EVALUABLE: &[Phase] = &[InitializationMode, EventMode, ContinuousTimeMode, Terminated];
 const DIFFERENTIABLE: &[Phase] = &[InitializationMode, EventMode, ContinuousTimeMode, StepMode, Terminated];
@@ -143,6 +144,11 @@ pub const ENTER_STEP_MODE: Function = Function::new("fmi3EnterStepMode", &[Event
 pub const GET_OUTPUT_DERIVATIVES: Function =
     Function::new("fmi3GetOutputDerivatives", &[StepMode, IntermediateUpdateMode, Terminated]);
 pub const DO_STEP: Function = Function::new("fmi3DoStep", &[StepMode]);
+/// The importer has returned from the callback within a step.
+pub const RETURN_FROM_INTERMEDIATE_UPDATE: Function = Function::new("fmi3DoStep", &[IntermediateUpdateMode]);
+/// The importer has returned from the callback within an activation.
+pub const RETURN_FROM_CLOCK_UPDATE: Function =
+    Function::new("fmi3ActivateModelPartition", &[ClockUpdateMode]);
 pub const ACTIVATE_MODEL_PARTITION: Function =
     Function::new("fmi3ActivateModelPartition", &[ClockActivationMode]);
 

@@ -8,6 +8,7 @@ use super::types::*;
 use crate::fmi::Interface;
 use crate::fmi::boundary::{create, enter, free, input};
 use crate::fmi::instance::instantiate;
+use crate::fmi::intermediate_update::IntermediateUpdate;
 use crate::fmi::log::{Callback, c_string, set_debug_logging};
 
 /// "3.0".
@@ -39,7 +40,8 @@ pub unsafe extern "C" fn fmi3SetDebugLogging(
     }
 }
 
-/// Makes a co-simulation instance of the unit that `token` selects; null and a log message if there is none.
+/// Makes a co-simulation instance of the unit that `token` selects; null and a log message if there is none, or if
+/// events are wanted of a unit that has none.
 ///
 /// # Safety
 /// Strings are null or end with NUL; the callbacks stay callable while the instance lives.
@@ -51,20 +53,32 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
     _visible: fmi3Boolean,
     logging_on: fmi3Boolean,
     event_mode_used: fmi3Boolean,
-    _early_return_allowed: fmi3Boolean,
+    early_return_allowed: fmi3Boolean,
     _required_intermediate_variables: *const fmi3ValueReference,
-    _required_intermediate_variable_count: usize,
+    required_intermediate_variable_count: usize,
     environment: fmi3InstanceEnvironment,
     log_message: Option<fmi3LogMessageCallback>,
-    _intermediate_update: Option<fmi3IntermediateUpdateCallback>,
+    intermediate_update: Option<fmi3IntermediateUpdateCallback>,
 ) -> fmi3Instance {
-    let interface =
-        if event_mode_used == FMI3_FALSE { Ok(Interface::CoSimulation) } else { Err("event mode") };
     // SAFETY: the caller's promise.
     let (name, token) = unsafe { (c_string(instance_name), c_string(token)) };
-    let callback = callback(log_message, environment);
+    let log = callback(log_message, environment);
     let function = "fmi3InstantiateCoSimulation";
-    create(|| instantiate(function, name, token, callback, logging_on != FMI3_FALSE, interface))
+    let may_return_early = early_return_allowed != FMI3_FALSE;
+    let interface = match event_mode_used {
+        FMI3_FALSE => Interface::CoSimulation,
+        _ => Interface::CoSimulationWithEvents { may_return_early },
+    };
+    create(|| {
+        let mut instance = instantiate(function, name, token, log, logging_on != FMI3_FALSE, Ok(interface))?;
+        // An importer without intermediate variables does not intend to use intermediate update (section 2.3.1), but
+        // has it early return to ask for.
+        let is_of_use = required_intermediate_variable_count > 0 || may_return_early;
+        instance.intermediate_update = intermediate_update
+            .filter(|_| is_of_use)
+            .map(|callback| IntermediateUpdate { callback, environment, may_return_early });
+        Some(instance)
+    })
 }
 
 /// Makes a model-exchange instance of the unit that `token` selects; null and a log message if there is none or if it
@@ -91,7 +105,7 @@ pub unsafe extern "C" fn fmi3InstantiateModelExchange(
     })
 }
 
-/// Not offered: returns null and logs why.
+/// Makes an instance of the sampled unit that `token` selects for a scheduler; null and a log message if there is none.
 ///
 /// # Safety
 /// As [`fmi3InstantiateCoSimulation`].
@@ -104,16 +118,19 @@ pub unsafe extern "C" fn fmi3InstantiateScheduledExecution(
     logging_on: fmi3Boolean,
     environment: fmi3InstanceEnvironment,
     log_message: Option<fmi3LogMessageCallback>,
-    _clock_update: Option<fmi3ClockUpdateCallback>,
+    clock_update: Option<fmi3ClockUpdateCallback>,
     _lock_preemption: Option<fmi3LockPreemptionCallback>,
     _unlock_preemption: Option<fmi3UnlockPreemptionCallback>,
 ) -> fmi3Instance {
     // SAFETY: the caller's promise.
     let (name, token) = unsafe { (c_string(instance_name), c_string(token)) };
-    let callback = callback(log_message, environment);
+    let log = callback(log_message, environment);
     let function = "fmi3InstantiateScheduledExecution";
     create(|| {
-        instantiate(function, name, token, callback, logging_on != FMI3_FALSE, Err("scheduled execution"))
+        let interface = Ok(Interface::ScheduledExecution);
+        let mut instance = instantiate(function, name, token, log, logging_on != FMI3_FALSE, interface)?;
+        instance.clock_update = clock_update.map(|callback| (callback, environment));
+        Some(instance)
     })
 }
 

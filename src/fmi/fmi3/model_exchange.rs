@@ -8,43 +8,6 @@ use crate::fmi::boundary::{enter, input, output, report};
 /// # Safety
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3EnterEventMode(instance: fmi3Instance) -> fmi3Status {
-    // SAFETY: the caller's promise.
-    unsafe { enter(instance, &may::ENTER_EVENT_MODE, |instance| instance.enter_event_mode()) }
-}
-
-/// Discrete transitions of an event. There are no time events, and one call settles everything.
-///
-/// # Safety
-/// A live handle, used by one thread at a time; the results are null or writable.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3UpdateDiscreteStates(
-    instance: fmi3Instance,
-    discrete_states_need_update: *mut fmi3Boolean,
-    terminate_simulation: *mut fmi3Boolean,
-    nominals_of_continuous_states_changed: *mut fmi3Boolean,
-    values_of_continuous_states_changed: *mut fmi3Boolean,
-    next_event_time_defined: *mut fmi3Boolean,
-    next_event_time: *mut fmi3Float64,
-) -> fmi3Status {
-    // SAFETY: the caller's promise.
-    unsafe {
-        enter(instance, &may::UPDATE_DISCRETE_STATES, |instance| {
-            let have_states_changed = instance.update_discrete_states()?;
-            report(discrete_states_need_update, FMI3_FALSE);
-            report(terminate_simulation, FMI3_FALSE);
-            report(nominals_of_continuous_states_changed, FMI3_FALSE);
-            report(values_of_continuous_states_changed, have_states_changed.into());
-            report(next_event_time_defined, FMI3_FALSE);
-            report(next_event_time, 0.0);
-            Ok(())
-        })
-    }
-}
-
-/// # Safety
-/// A live handle, used by one thread at a time.
-#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3EnterContinuousTimeMode(instance: fmi3Instance) -> fmi3Status {
     // SAFETY: the caller's promise.
     unsafe {

@@ -34,21 +34,7 @@ not_offered! { "the unit has no structural parameters":
     ENTER_CONFIGURATION_MODE fmi3EnterConfigurationMode();
     EXIT_CONFIGURATION_MODE fmi3ExitConfigurationMode();
 }
-not_offered! { "the unit has no clocks":
-    GET_INTERVAL_DECIMAL fmi3GetIntervalDecimal(
-        _references: *const fmi3ValueReference, _count: usize,
-        _intervals: *mut fmi3Float64, _qualifiers: *mut fmi3IntervalQualifier
-    );
-    GET_INTERVAL_FRACTION fmi3GetIntervalFraction(
-        _references: *const fmi3ValueReference, _count: usize,
-        _counters: *mut u64, _resolutions: *mut u64, _qualifiers: *mut fmi3IntervalQualifier
-    );
-    GET_SHIFT_DECIMAL fmi3GetShiftDecimal(
-        _references: *const fmi3ValueReference, _count: usize, _shifts: *mut fmi3Float64
-    );
-    GET_SHIFT_FRACTION fmi3GetShiftFraction(
-        _references: *const fmi3ValueReference, _count: usize, _counters: *mut u64, _resolutions: *mut u64
-    );
+not_offered! { "the interval of a clock follows from sample_time":
     SET_INTERVAL_DECIMAL fmi3SetIntervalDecimal(
         _references: *const fmi3ValueReference, _count: usize, _intervals: *const fmi3Float64
     );
@@ -61,9 +47,7 @@ not_offered! { "the unit has no clocks":
     SET_SHIFT_FRACTION fmi3SetShiftFraction(
         _references: *const fmi3ValueReference, _count: usize, _counters: *const u64, _resolutions: *const u64
     );
-    ACTIVATE_MODEL_PARTITION fmi3ActivateModelPartition(_clock: fmi3ValueReference, _time: fmi3Float64);
 }
-not_offered! { "hasEventMode = false":
+not_offered! { "providesEvaluateDiscreteStates = false":
     EVALUATE_DISCRETE_STATES fmi3EvaluateDiscreteStates();
-    ENTER_STEP_MODE fmi3EnterStepMode();
 }

@@ -19,6 +19,10 @@ pub type fmi3Status = c_int;
 pub type fmi3DependencyKind = c_int;
 pub type fmi3IntervalQualifier = c_int;
 
+/// Values of `fmi3IntervalQualifier`.
+pub const FMI3_INTERVAL_UNCHANGED: fmi3IntervalQualifier = 1;
+pub const FMI3_INTERVAL_CHANGED: fmi3IntervalQualifier = 2;
+
 pub const FMI3_TRUE: fmi3Boolean = 1;
 pub const FMI3_FALSE: fmi3Boolean = 0;
 

@@ -34,7 +34,12 @@ macro_rules! accessors {
                     require_length(value_count, count)?;
                     let references = input(references, count, "valueReferences")?;
                     let values = output(values, count, "values")?;
-                    instance.get(&DataType { name: $name, carries: $carries }, references, values, $from)
+                    instance.get(
+                        &DataType { name: $name, carries: $carries, has_clocks: true },
+                        references,
+                        values,
+                        $from,
+                    )
                 })
             }
         }
@@ -55,7 +60,12 @@ macro_rules! accessors {
                     require_length(value_count, count)?;
                     let references = input(references, count, "valueReferences")?;
                     let values = input(values, count, "values")?;
-                    instance.set(&DataType { name: $name, carries: $carries }, references, values, $into)
+                    instance.set(
+                        &DataType { name: $name, carries: $carries, has_clocks: true },
+                        references,
+                        values,
+                        $into,
+                    )
                 })
             }
         }
@@ -88,8 +98,7 @@ absent!("a UInt32", fmi3GetUInt32 GET_UINT32, fmi3SetUInt32 SET_UINT32, u32, 0);
 absent!("a UInt64", fmi3GetUInt64 GET_UINT64, fmi3SetUInt64 SET_UINT64, u64, 0);
 absent!("a String", fmi3GetString GET_STRING, fmi3SetString SET_STRING, fmi3String, core::ptr::null());
 
-const BINARY: DataType = DataType { name: "a Binary", carries: |_| false };
-const CLOCK: DataType = DataType { name: "a Clock", carries: |_| false };
+const BINARY: DataType = DataType { name: "a Binary", carries: |_| false, has_clocks: true };
 
 /// # Safety
 /// A live handle, used by one thread at a time; the arrays hold as many elements as the counts say.
@@ -129,42 +138,6 @@ pub unsafe extern "C" fn fmi3SetBinary(
             require_length(value_count, count)?;
             let references = input(references, count, "valueReferences")?;
             instance.set(&BINARY, references, input(values, count, "values")?, |_| 0.0)
-        })
-    }
-}
-
-/// # Safety
-/// A live handle, used by one thread at a time; both arrays hold `count` elements.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetClock(
-    instance: fmi3Instance,
-    references: *const fmi3ValueReference,
-    count: usize,
-    values: *mut fmi3Clock,
-) -> fmi3Status {
-    // SAFETY: the caller's promise.
-    unsafe {
-        enter(instance, &may::GET_CLOCK, |instance| {
-            let references = input(references, count, "valueReferences")?;
-            instance.get(&CLOCK, references, output(values, count, "values")?, |_| 0)
-        })
-    }
-}
-
-/// # Safety
-/// A live handle, used by one thread at a time; both arrays hold `count` elements.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SetClock(
-    instance: fmi3Instance,
-    references: *const fmi3ValueReference,
-    count: usize,
-    values: *const fmi3Clock,
-) -> fmi3Status {
-    // SAFETY: the caller's promise.
-    unsafe {
-        enter(instance, &may::SET_CLOCK, |instance| {
-            let references = input(references, count, "valueReferences")?;
-            instance.set(&CLOCK, references, input(values, count, "values")?, |_| 0.0)
         })
     }
 }

@@ -32,6 +32,10 @@ type SetupExperiment =
 type DoStep = unsafe extern "C" fn(fmi2Component, fmi2Real, fmi2Real, fmi2Boolean) -> fmi2Status;
 type StateByPointer = unsafe extern "C" fn(fmi2Component, *mut fmi2FMUstate) -> fmi2Status;
 type StateByValue = unsafe extern "C" fn(fmi2Component, fmi2FMUstate) -> fmi2Status;
+type StateSize = unsafe extern "C" fn(fmi2Component, fmi2FMUstate, *mut usize) -> fmi2Status;
+type SerialiseState = unsafe extern "C" fn(fmi2Component, fmi2FMUstate, *mut fmi2Byte, usize) -> fmi2Status;
+type DeserialiseState =
+    unsafe extern "C" fn(fmi2Component, *const fmi2Byte, usize, *mut fmi2FMUstate) -> fmi2Status;
 
 /// The functions a co-simulation client of FMI 2.0 calls.
 #[derive(Clone, Copy)]
@@ -55,6 +59,9 @@ pub(in crate::host) struct Functions {
     pub(super) get_state: Option<StateByPointer>,
     pub(super) set_state: Option<StateByValue>,
     pub(super) free_state: Option<StateByPointer>,
+    pub(super) state_size: Option<StateSize>,
+    pub(super) serialise_state: Option<SerialiseState>,
+    pub(super) deserialise_state: Option<DeserialiseState>,
 }
 
 impl Functions {
@@ -82,6 +89,9 @@ impl Functions {
                 get_state: library.optional("fmi2GetFMUstate"),
                 set_state: library.optional("fmi2SetFMUstate"),
                 free_state: library.optional("fmi2FreeFMUstate"),
+                state_size: library.optional("fmi2SerializedFMUstateSize"),
+                serialise_state: library.optional("fmi2SerializeFMUstate"),
+                deserialise_state: library.optional("fmi2DeSerializeFMUstate"),
             })
         }
     }

@@ -172,6 +172,31 @@ impl Component for FmiTwo {
         // SAFETY: the state is this component's own, by the trait's contract.
         accept(name, unsafe { function(self.component, &mut state) })
     }
+
+    fn serialise_state(&mut self, state: *mut c_void) -> Answer<Vec<u8>> {
+        let name = "fmi2SerializedFMUstateSize";
+        let function = self.functions.state_size.ok_or(Refusal::Missing { function: name })?;
+        let mut size = 0;
+        // SAFETY: the state is this component's own, by the trait's contract; room for the size.
+        accept(name, unsafe { function(self.component, state, &mut size) })?;
+        let name = "fmi2SerializeFMUstate";
+        let function = self.functions.serialise_state.ok_or(Refusal::Missing { function: name })?;
+        let mut bytes = vec![0; size];
+        let target = bytes.as_mut_ptr().cast();
+        // SAFETY: as above, and room for as many bytes as were asked for.
+        accept(name, unsafe { function(self.component, state, target, size) })?;
+        Ok(bytes)
+    }
+
+    fn deserialise_state(&mut self, bytes: &[u8]) -> Answer<*mut c_void> {
+        let name = "fmi2DeSerializeFMUstate";
+        let function = self.functions.deserialise_state.ok_or(Refusal::Missing { function: name })?;
+        // NULL asks the FMU to allocate.
+        let mut state = ptr::null_mut();
+        let source = bytes.as_ptr().cast();
+        // SAFETY: as many bytes as said, room for one pointer.
+        accept(name, unsafe { function(self.component, source, bytes.len(), &mut state) }).map(|()| state)
+    }
 }
 
 /// The callback table of one instance, which must not move.

@@ -51,6 +51,10 @@ type DoStep = unsafe extern "C" fn(
 ) -> fmi3Status;
 type StateByPointer = unsafe extern "C" fn(fmi3Instance, *mut fmi3FMUState) -> fmi3Status;
 type StateByValue = unsafe extern "C" fn(fmi3Instance, fmi3FMUState) -> fmi3Status;
+type StateSize = unsafe extern "C" fn(fmi3Instance, fmi3FMUState, *mut usize) -> fmi3Status;
+type SerialiseState = unsafe extern "C" fn(fmi3Instance, fmi3FMUState, *mut fmi3Byte, usize) -> fmi3Status;
+type DeserialiseState =
+    unsafe extern "C" fn(fmi3Instance, *const fmi3Byte, usize, *mut fmi3FMUState) -> fmi3Status;
 
 /// The pair of functions for one type of value. Libraries often lack those of types they do not use.
 #[derive(Clone, Copy)]
@@ -96,6 +100,9 @@ pub(in crate::host) struct Functions {
     pub(super) get_state: Option<StateByPointer>,
     pub(super) set_state: Option<StateByValue>,
     pub(super) free_state: Option<StateByPointer>,
+    pub(super) state_size: Option<StateSize>,
+    pub(super) serialise_state: Option<SerialiseState>,
+    pub(super) deserialise_state: Option<DeserialiseState>,
 }
 
 impl Functions {
@@ -127,6 +134,9 @@ impl Functions {
                 get_state: library.optional("fmi3GetFMUState"),
                 set_state: library.optional("fmi3SetFMUState"),
                 free_state: library.optional("fmi3FreeFMUState"),
+                state_size: library.optional("fmi3SerializedFMUStateSize"),
+                serialise_state: library.optional("fmi3SerializeFMUState"),
+                deserialise_state: library.optional("fmi3DeserializeFMUState"),
             })
         }
     }

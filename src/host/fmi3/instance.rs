@@ -220,4 +220,29 @@ impl Component for FmiThree {
         // SAFETY: the state is this instance's own, by the trait's contract.
         accept(name, unsafe { function(self.instance, &mut state) })
     }
+
+    fn serialise_state(&mut self, state: *mut c_void) -> Answer<Vec<u8>> {
+        let name = "fmi3SerializedFMUStateSize";
+        let function = self.functions.state_size.ok_or(Refusal::Missing { function: name })?;
+        let mut size = 0;
+        // SAFETY: the state is this instance's own, by the trait's contract; room for the size.
+        accept(name, unsafe { function(self.instance, state, &mut size) })?;
+        let name = "fmi3SerializeFMUState";
+        let function = self.functions.serialise_state.ok_or(Refusal::Missing { function: name })?;
+        let mut bytes = vec![0; size];
+        let target = bytes.as_mut_ptr();
+        // SAFETY: as above, and room for as many bytes as were asked for.
+        accept(name, unsafe { function(self.instance, state, target, size) })?;
+        Ok(bytes)
+    }
+
+    fn deserialise_state(&mut self, bytes: &[u8]) -> Answer<*mut c_void> {
+        let name = "fmi3DeserializeFMUState";
+        let function = self.functions.deserialise_state.ok_or(Refusal::Missing { function: name })?;
+        // NULL asks the FMU to allocate.
+        let mut state = ptr::null_mut();
+        let source = bytes.as_ptr();
+        // SAFETY: as many bytes as said, room for one pointer.
+        accept(name, unsafe { function(self.instance, source, bytes.len(), &mut state) }).map(|()| state)
+    }
 }

@@ -1,5 +1,6 @@
 //! What the standards derive from a variable's causality and variability.
 
+use crate::package::Capabilities;
 use crate::unit::Description;
 use crate::unit::variable::{Causality, DependencyKind, Kind, Variability, Variable};
 
@@ -43,6 +44,13 @@ pub fn start(variable: &Variable) -> Option<String> {
 pub fn range(variable: &Variable) -> [Option<String>; 2] {
     let (minimum, maximum) = variable.range;
     [minimum, maximum].map(|bound| bound.is_finite().then(|| literal(variable.kind, bound)))
+}
+
+/// FMI 3.0, attribute `intermediateUpdate`: whether an importer may give the variable a value within a step. A sampled
+/// unit calls the importer back before each tick within a step, which then reads its continuous inputs.
+pub fn may_be_set_within_a_step(description: &Description, variable: &Variable) -> bool {
+    Capabilities::of(description).provides_intermediate_update
+        && (variable.causality, variable.variability) == (Causality::Input, Variability::Continuous)
 }
 
 /// A value of a variable in XML, with all its digits.

@@ -8,6 +8,7 @@ pub use table::DESCRIPTION;
 use table::*;
 
 use super::sample_clock::SampleClock;
+use super::sampled::{LARGEST_NUMBER_OF_TICKS, SampledUnit};
 use super::{Description, Journal, Topic, Unit, UnitError, start_values};
 use crate::controller::ball_feedback_linearisation::BallFeedbackLinearisation;
 use crate::controller::saturate;
@@ -16,9 +17,6 @@ use crate::plant::levitated_ball::State;
 use crate::signal::{BallReferenceFilter, SmoothReference};
 use serde::{Deserialize, Serialize};
 use serde_big_array::BigArray;
-
-/// Ticks in one step, minutes of computing; more can only be a mistake, as an end time that stands for "never".
-const LARGEST_NUMBER_OF_TICKS: i64 = 1_000_000_000;
 
 /// The controller as a unit.
 #[derive(Clone, Serialize, Deserialize)]
@@ -48,7 +46,8 @@ impl LevitatedBallController {
 
     /// Reads the inputs, runs the observer, then the law, and sets the outputs.
     #[inline]
-    fn tick(&mut self, journal: &mut dyn Journal) {
+    fn tick_at(&mut self, time: f64, journal: &mut dyn Journal) {
+        self.values[TICK_TIME] = time;
         let values = &mut self.values;
         let (current, rate) = (values[CURRENT_INPUT], values[REFERENCE_FILTER]);
         let hears_applied_voltage = values[OBSERVER_VOLTAGE_SOURCE] == APPLIED;
@@ -153,10 +152,13 @@ impl Unit for LevitatedBallController {
 
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError> {
         for k in self.clock.advance_at_most(duration, LARGEST_NUMBER_OF_TICKS)? {
-            self.values[TICK_TIME] = self.clock.time_of(k);
-            self.tick(journal);
+            self.tick_at(self.clock.time_of(k), journal);
         }
         Ok(())
+    }
+
+    fn sampled(&mut self) -> Option<&mut dyn SampledUnit> {
+        Some(self)
     }
 
     fn is_consistent(&self) -> bool {
@@ -166,5 +168,19 @@ impl Unit for LevitatedBallController {
 
     fn boxed_clone(&self) -> Box<dyn Unit> {
         Box::new(self.clone())
+    }
+}
+
+impl SampledUnit for LevitatedBallController {
+    fn clock(&self) -> &SampleClock {
+        &self.clock
+    }
+
+    fn clock_mut(&mut self) -> &mut SampleClock {
+        &mut self.clock
+    }
+
+    fn tick(&mut self, time: f64, journal: &mut dyn Journal) {
+        self.tick_at(time, journal);
     }
 }

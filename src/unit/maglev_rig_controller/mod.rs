@@ -8,6 +8,7 @@ pub use table::DESCRIPTION;
 use table::*;
 
 use super::sample_clock::SampleClock;
+use super::sampled::{LARGEST_NUMBER_OF_TICKS, SampledUnit};
 use super::{Description, Journal, Topic, Unit, UnitError, start_values};
 use crate::controller::digital_pid::DigitalPid;
 use crate::controller::saturate_between;
@@ -16,9 +17,6 @@ use crate::observer::sampled_extended_state::ExtendedStateObserver;
 use crate::signal::reference_filter::{Reference, ReferenceFilter};
 use serde::{Deserialize, Serialize};
 use serde_big_array::BigArray;
-
-/// Ticks in one step, minutes of computing; more can only be a mistake, as an end time that stands for "never".
-const LARGEST_NUMBER_OF_TICKS: i64 = 1_000_000_000;
 
 /// The controller as a unit.
 #[derive(Clone, Serialize, Deserialize)]
@@ -57,7 +55,8 @@ impl MaglevRigController {
 
     /// Reads the inputs, runs the observer, then the law, and sets the outputs.
     #[inline]
-    fn tick(&mut self, journal: &mut dyn Journal) {
+    fn tick_at(&mut self, time: f64, journal: &mut dyn Journal) {
+        self.values[TICK_TIME] = time;
         if self.awaits_first_tick {
             self.begin(journal);
         }
@@ -183,10 +182,13 @@ impl Unit for MaglevRigController {
 
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError> {
         for k in self.clock.advance_at_most(duration, LARGEST_NUMBER_OF_TICKS)? {
-            self.values[TICK_TIME] = self.clock.time_of(k);
-            self.tick(journal);
+            self.tick_at(self.clock.time_of(k), journal);
         }
         Ok(())
+    }
+
+    fn sampled(&mut self) -> Option<&mut dyn SampledUnit> {
+        Some(self)
     }
 
     fn is_consistent(&self) -> bool {
@@ -200,5 +202,19 @@ impl Unit for MaglevRigController {
 
     fn boxed_clone(&self) -> Box<dyn Unit> {
         Box::new(self.clone())
+    }
+}
+
+impl SampledUnit for MaglevRigController {
+    fn clock(&self) -> &SampleClock {
+        &self.clock
+    }
+
+    fn clock_mut(&mut self) -> &mut SampleClock {
+        &mut self.clock
+    }
+
+    fn tick(&mut self, time: f64, journal: &mut dyn Journal) {
+        self.tick_at(time, journal);
     }
 }

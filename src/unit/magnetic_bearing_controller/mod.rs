@@ -8,15 +8,13 @@ pub use table::DESCRIPTION;
 use table::*;
 
 use super::sample_clock::SampleClock;
+use super::sampled::{LARGEST_NUMBER_OF_TICKS, SampledUnit};
 use super::{Description, Journal, Topic, Unit, UnitError, start_values};
 use crate::controller::{BearingLaw, saturate};
 use crate::observer::{BearingObserver, Estimate};
 use crate::plant::magnetic_bearing::State;
 use serde::{Deserialize, Serialize};
 use serde_big_array::BigArray;
-
-/// Ticks in one step, minutes of computing; more can only be a mistake, as an end time that stands for "never".
-const LARGEST_NUMBER_OF_TICKS: i64 = 1_000_000_000;
 
 /// The controller as a unit.
 #[derive(Clone, Serialize, Deserialize)]
@@ -49,8 +47,9 @@ impl MagneticBearingController {
 
     /// Reads the inputs, runs the observer, then the law, and sets the outputs.
     #[inline]
-    fn tick(&mut self, journal: &mut dyn Journal) {
+    fn tick_at(&mut self, time: f64, journal: &mut dyn Journal) {
         let values = &mut self.values;
+        values[TICK_TIME] = time;
         let acted = if self.hears_applied_voltage { values[VOLTAGE_APPLIED] } else { values[VOLTAGE_OUTPUT] };
         let estimate = self.observer.update(values[POSITION], acted);
 
@@ -153,10 +152,13 @@ impl Unit for MagneticBearingController {
 
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError> {
         for k in self.clock.advance_at_most(duration, LARGEST_NUMBER_OF_TICKS)? {
-            self.values[TICK_TIME] = self.clock.time_of(k);
-            self.tick(journal);
+            self.tick_at(self.clock.time_of(k), journal);
         }
         Ok(())
+    }
+
+    fn sampled(&mut self) -> Option<&mut dyn SampledUnit> {
+        Some(self)
     }
 
     fn is_consistent(&self) -> bool {
@@ -167,5 +169,19 @@ impl Unit for MagneticBearingController {
 
     fn boxed_clone(&self) -> Box<dyn Unit> {
         Box::new(self.clone())
+    }
+}
+
+impl SampledUnit for MagneticBearingController {
+    fn clock(&self) -> &SampleClock {
+        &self.clock
+    }
+
+    fn clock_mut(&mut self) -> &mut SampleClock {
+        &mut self.clock
+    }
+
+    fn tick(&mut self, time: f64, journal: &mut dyn Journal) {
+        self.tick_at(time, journal);
     }
 }

@@ -224,13 +224,14 @@ impl Unit for MagneticBearingPlant {
         Ok(())
     }
 
-    fn continuous(&mut self) -> Option<&mut dyn ContinuousUnit> {
-        Some(self)
-    }
-
     fn is_consistent(&self) -> bool {
         self.bearing == MagneticBearing::with_bias(self.values[BIAS_FLUX], self.values[SATURATION_FLUX])
             && check_finite(&self.state()).is_ok()
+            && self.voltage_slope.is_finite()
+    }
+
+    fn continuous(&mut self) -> Option<&mut dyn ContinuousUnit> {
+        Some(self)
     }
 
     fn boxed_clone(&self) -> Box<dyn Unit> {

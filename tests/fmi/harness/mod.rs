@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each test binary uses a part")]
 
 mod access;
+pub mod clocked;
 mod exchange;
 mod instantiate;
 mod recorder;

@@ -30,6 +30,8 @@ pub struct ModelDescription {
     pub model_exchange: Option<ModelExchange>,
     #[serde(rename = "CoSimulation")]
     pub co_simulation: CoSimulation,
+    #[serde(rename = "ScheduledExecution", skip_serializing_if = "Option::is_none")]
+    pub scheduled_execution: Option<ScheduledExecution>,
     #[serde(rename = "UnitDefinitions")]
     pub unit_definitions: UnitDefinitions,
     #[serde(rename = "TypeDefinitions")]
@@ -103,6 +105,26 @@ pub struct CoSimulation {
 }
 
 #[derive(Serialize)]
+pub struct ScheduledExecution {
+    #[serde(rename = "@modelIdentifier")]
+    pub model_identifier: &'static str,
+    #[serde(rename = "@needsExecutionTool")]
+    pub needs_execution_tool: bool,
+    #[serde(rename = "@canBeInstantiatedOnlyOncePerProcess")]
+    pub can_be_instantiated_only_once_per_process: bool,
+    #[serde(rename = "@canGetAndSetFMUState")]
+    pub can_get_and_set_fmu_state: bool,
+    #[serde(rename = "@canSerializeFMUState")]
+    pub can_serialize_fmu_state: bool,
+    #[serde(rename = "@providesDirectionalDerivatives")]
+    pub provides_directional_derivatives: bool,
+    #[serde(rename = "@providesAdjointDerivatives")]
+    pub provides_adjoint_derivatives: bool,
+    #[serde(rename = "@providesPerElementDependencies")]
+    pub provides_per_element_dependencies: bool,
+}
+
+#[derive(Serialize)]
 pub struct TypeDefinitions {
     #[serde(rename = "$value")]
     pub types: Vec<Type>,
@@ -148,6 +170,27 @@ pub enum TypedVariable {
     Int32(VariableAttributes),
     Boolean(VariableAttributes),
     Enumeration(VariableAttributes),
+    Clock(ClockAttributes),
+}
+
+#[derive(Serialize)]
+pub struct ClockAttributes {
+    #[serde(rename = "@name")]
+    pub name: &'static str,
+    #[serde(rename = "@valueReference")]
+    pub value_reference: usize,
+    #[serde(rename = "@description")]
+    pub description: &'static str,
+    #[serde(rename = "@causality")]
+    pub causality: &'static str,
+    #[serde(rename = "@variability")]
+    pub variability: &'static str,
+    #[serde(rename = "@priority", skip_serializing_if = "Option::is_none")]
+    pub priority: Option<u32>,
+    #[serde(rename = "@intervalVariability")]
+    pub interval_variability: &'static str,
+    #[serde(rename = "@supportsFraction", skip_serializing_if = "Option::is_none")]
+    pub supports_fraction: Option<bool>,
 }
 
 #[derive(Serialize)]
@@ -164,6 +207,8 @@ pub struct VariableAttributes {
     pub variability: &'static str,
     #[serde(rename = "@initial", skip_serializing_if = "Option::is_none")]
     pub initial: Option<&'static str>,
+    #[serde(rename = "@intermediateUpdate", skip_serializing_if = "Option::is_none")]
+    pub intermediate_update: Option<bool>,
     #[serde(rename = "@declaredType", skip_serializing_if = "Option::is_none")]
     pub declared_type: Option<&'static str>,
     #[serde(rename = "@min", skip_serializing_if = "Option::is_none")]

@@ -4,8 +4,8 @@ mod elements;
 
 pub use elements::ModelDescription;
 use elements::{
-    CoSimulation, ModelExchange, ModelStructure, ModelVariables, Type, TypeDefinitions, TypedVariable,
-    Unknown, VariableAttributes,
+    ClockAttributes, CoSimulation, ModelExchange, ModelStructure, ModelVariables, ScheduledExecution, Type,
+    TypeDefinitions, TypedVariable, Unknown, VariableAttributes,
 };
 
 use super::common::{
@@ -15,6 +15,7 @@ use super::common::{
 use super::roles;
 use crate::package::{Capabilities, FmiVersion, GenerationTime, licenses};
 use crate::unit::Description;
+use crate::unit::sampled::ClockVariable;
 use crate::unit::variable::{Kind, Variable};
 
 impl ModelDescription {
@@ -33,6 +34,7 @@ impl ModelDescription {
             variable_naming_convention: "structured",
             model_exchange: description.offers_model_exchange().then(|| ModelExchange::new(description)),
             co_simulation: CoSimulation::new(description),
+            scheduled_execution: ScheduledExecution::new(description),
             unit_definitions: UnitDefinitions::new(description),
             type_definitions: TypeDefinitions::new(description),
             log_categories: LogCategories::new(),
@@ -40,6 +42,9 @@ impl ModelDescription {
             model_variables: ModelVariables {
                 variables: variables
                     .map(|(reference, variable)| TypedVariable::new(description, reference, variable))
+                    .chain(
+                        description.clocks().map(|(reference, clock)| TypedVariable::clock(reference, clock)),
+                    )
                     .collect(),
             },
             model_structure: ModelStructure::new(description),
@@ -88,6 +93,22 @@ impl CoSimulation {
     }
 }
 
+impl ScheduledExecution {
+    fn new(description: &Description) -> Option<Self> {
+        let can = Capabilities::of(description);
+        can.offers_scheduled_execution.then_some(Self {
+            model_identifier: description.name,
+            needs_execution_tool: can.needs_execution_tool,
+            can_be_instantiated_only_once_per_process: can.can_be_instantiated_only_once_per_process,
+            can_get_and_set_fmu_state: can.can_get_and_set_fmu_state,
+            can_serialize_fmu_state: can.can_serialize_fmu_state,
+            provides_directional_derivatives: can.provides_directional_derivatives,
+            provides_adjoint_derivatives: can.provides_adjoint_derivatives,
+            provides_per_element_dependencies: can.provides_per_element_dependencies,
+        })
+    }
+}
+
 impl TypeDefinitions {
     fn new(description: &Description) -> Self {
         let reals = quantities(description).into_iter().map(|quantity| Type::Float64Type {
@@ -108,6 +129,21 @@ impl TypeDefinitions {
 }
 
 impl TypedVariable {
+    fn clock(value_reference: usize, clock: &ClockVariable) -> Self {
+        // The interval follows from a fixed parameter, so the clock is a fixed one without intervalDecimal; section
+        // 2.4.5.1 asks for that attribute, but by section 2.2.9.1 an importer would then have to set the interval.
+        Self::Clock(ClockAttributes {
+            name: clock.name,
+            value_reference,
+            description: clock.description,
+            causality: if clock.is_input { "input" } else { "output" },
+            variability: "discrete",
+            priority: clock.is_input.then_some(0),
+            interval_variability: if clock.is_input { "fixed" } else { "triggered" },
+            supports_fraction: clock.is_input.then_some(true),
+        })
+    }
+
     fn new(description: &Description, value_reference: usize, variable: &Variable) -> Self {
         let [minimum, maximum] = roles::range(variable);
         let attributes = |declared_type| VariableAttributes {
@@ -117,6 +153,7 @@ impl TypedVariable {
             causality: roles::causality(variable),
             variability: roles::variability(variable),
             initial: roles::initial(variable),
+            intermediate_update: roles::may_be_set_within_a_step(description, variable).then_some(true),
             declared_type,
             minimum,
             maximum,
@@ -133,6 +170,19 @@ impl TypedVariable {
     }
 }
 
+/// Clocks that the unit activates: a tick of the input clocks is one of theirs.
+fn output_clocks(description: &Description) -> impl Iterator<Item = Unknown> {
+    let clocks = |is_input| {
+        let clocks = description.clocks().filter(move |(_, clock)| clock.is_input == is_input);
+        clocks.map(|(reference, _)| reference)
+    };
+    clocks(false).map(move |value_reference| Unknown {
+        value_reference,
+        dependencies: clocks(true).map(|reference| reference.to_string()).collect::<Vec<_>>().join(" "),
+        dependencies_kind: Some(clocks(true).map(|_| "dependent").collect::<Vec<_>>().join(" ")),
+    })
+}
+
 impl ModelStructure {
     fn new(description: &Description) -> Self {
         let unknown = |value_reference, dependencies: roles::Dependencies| Unknown {
@@ -143,10 +193,19 @@ impl ModelStructure {
         let at_an_instant =
             |reference| unknown(reference, roles::Dependencies::at_an_instant(description, reference, true));
         Self {
-            outputs: roles::outputs(description).map(at_an_instant).collect(),
+            outputs: roles::outputs(description)
+                .map(at_an_instant)
+                .chain(output_clocks(description))
+                .collect(),
             derivatives: roles::derivatives(description).map(at_an_instant).collect(),
             initial_unknowns: roles::initial_unknowns(description)
                 .map(|(reference, dependencies)| unknown(reference, dependencies))
+                // No clock is active during initialisation.
+                .chain(output_clocks(description).map(|clock| Unknown {
+                    dependencies: String::new(),
+                    dependencies_kind: None,
+                    ..clock
+                }))
                 .collect(),
             event_indicators: description.event_indicators().map(at_an_instant).collect(),
         }

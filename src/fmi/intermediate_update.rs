@@ -1,0 +1,123 @@
+//! Intermediate update of FMI 3.0: a sampled unit calls the importer back at each tick within a step.
+//!
+//! At the callback the tick is due and not yet run: the importer may set the continuous inputs as of that time, which
+//! the tick then reads, or end the step there. The first tick of a step that starts at it needs no callback, its inputs
+//! were just set. Plants make no steps of their own within a communication step and call nobody.
+
+use super::fmi3::types::{fmi3InstanceEnvironment, fmi3IntermediateUpdateCallback};
+use super::ticking::{StepEnd, sampled};
+use super::{CallError, CommunicationPoint, Instance, Interface, Phase};
+use crate::unit::TIME;
+use crate::unit::sample_clock::SampleClock;
+use crate::unit::sampled::LARGEST_NUMBER_OF_TICKS;
+
+/// What the importer gave at instantiation.
+#[derive(Clone, Copy)]
+pub(super) struct IntermediateUpdate {
+    pub callback: fmi3IntermediateUpdateCallback,
+    pub environment: fmi3InstanceEnvironment,
+    /// The importer lets steps end early.
+    pub may_return_early: bool,
+}
+
+/// A step with callbacks; times in s.
+#[derive(Clone, Copy)]
+pub(super) struct StepInProgress {
+    /// Communication point at which the step is to end.
+    end: f64,
+    /// Duration that is left.
+    rest: f64,
+    /// Time of the callback.
+    time: f64,
+    /// The unit's clock as it will be at the end; none once the end has been moved.
+    final_clock: Option<SampleClock>,
+}
+
+/// How far a step has come.
+pub(super) enum Progress {
+    Done(StepEnd),
+    /// The importer has to be called back at this time \[s\], and [`Instance::resume_step`] then.
+    Waits(IntermediateUpdate, f64),
+}
+
+impl Instance {
+    /// Begins a step from `point` over `step_size`, both in s.
+    #[inline]
+    pub(super) fn begin_step(&mut self, point: f64, step_size: f64) -> Result<Progress, CallError> {
+        // With events, ticks end steps unless that is forbidden, and it is the importer who runs them.
+        let ends_at_ticks = self.interface == Interface::CoSimulationWithEvents { may_return_early: true };
+        match self.intermediate_update {
+            Some(update) if !ends_at_ticks && self.unit.sampled().is_some() => {
+                self.begin_step_with_callbacks(update, point, step_size)
+            }
+            _ => self.step_to_event(point, step_size).map(Progress::Done),
+        }
+    }
+
+    fn begin_step_with_callbacks(
+        &mut self,
+        update: IntermediateUpdate,
+        point: f64,
+        step_size: f64,
+    ) -> Result<Progress, CallError> {
+        let duration = self.communication.duration(point, step_size)?;
+        let unit = sampled(&mut *self.unit)?;
+        let mut final_clock = *unit.clock();
+        // Refuses what `Unit::advance` would refuse; the ticks are counted one by one below.
+        final_clock.advance_at_most(duration, LARGEST_NUMBER_OF_TICKS)?;
+        if unit.clock().until_tick_within(duration) == Some(0.0) {
+            let time = unit.clock_mut().take();
+            unit.tick(time, &mut self.logger);
+        }
+        let end = point + step_size;
+        let step = StepInProgress { end, rest: duration, time: point, final_clock: Some(final_clock) };
+        self.go_on(update, step)
+    }
+
+    /// Goes on after a callback; the importer wants the step to end at `early_return` \[s\], if it does.
+    pub(super) fn resume_step(&mut self, early_return: Option<f64>) -> Result<Progress, CallError> {
+        let (Some(mut step), Some(update)) = (self.step.take(), self.intermediate_update) else {
+            return Err(CallError::NotOffered("no step is in progress"));
+        };
+        self.phase = Phase::StepMode;
+        let early_return = early_return.filter(|_| update.may_return_early);
+        // Not a number counts as now.
+        let early_return = early_return.map(|time| if time > step.time { time } else { step.time });
+        if let Some(time) = early_return.filter(|time| *time < step.end) {
+            step.rest = time - step.time;
+            step.end = time;
+            step.final_clock = None;
+        }
+        let unit = sampled(&mut *self.unit)?;
+        // A tick at the end of the step belongs to the next one.
+        if unit.clock().until_tick_within(step.rest).is_some() {
+            let time = unit.clock_mut().take();
+            unit.tick(time, &mut self.logger);
+        }
+        self.go_on(update, step)
+    }
+
+    /// To the next tick within the step, or to its end.
+    fn go_on(&mut self, update: IntermediateUpdate, mut step: StepInProgress) -> Result<Progress, CallError> {
+        let unit = sampled(&mut *self.unit)?;
+        let clock = unit.clock_mut();
+        if let Some(wait) = clock.until_tick_within(step.rest) {
+            clock.pass(wait);
+            step.rest -= wait;
+            step.time = clock.next_time().max(step.time).min(step.end);
+            self.unit.values_mut()[TIME] = step.time;
+            self.phase = Phase::IntermediateUpdateMode;
+            self.step = Some(step);
+            return Ok(Progress::Waits(update, step.time));
+        }
+        match &step.final_clock {
+            // To the last digit where `Unit::advance` would have left it.
+            Some(final_clock) => *clock = *final_clock,
+            None => clock.pass(step.rest),
+        }
+        let is_event = matches!(self.interface, Interface::CoSimulationWithEvents { .. }) && clock.is_due();
+        self.communication = CommunicationPoint::new(step.end);
+        self.unit.values_mut()[TIME] = step.end;
+        Ok(Progress::Done(StepEnd { is_event, is_early: step.final_clock.is_none() }))
+    }
+}

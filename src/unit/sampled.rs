@@ -1,0 +1,54 @@
+//! Units that act at the ticks of a clock: what it takes to leave the ticks to somebody else.
+
+use super::sample_clock::SampleClock;
+use super::{Description, Journal};
+
+/// Ticks in one step, minutes of computing; more can only be a mistake, as an end time that stands for "never".
+pub const LARGEST_NUMBER_OF_TICKS: i64 = 1_000_000_000;
+
+/// A unit whose ticks may be had one by one; [`super::Unit::advance`] runs them by itself.
+///
+/// The ticks that are run are the same either way, and so is what they do: it follows from the inputs at a tick and
+/// from what the ticks before have left behind, never from the steps in between.
+pub trait SampledUnit {
+    fn clock(&self) -> &SampleClock;
+
+    fn clock_mut(&mut self) -> &mut SampleClock;
+
+    /// Reads the inputs and sets the outputs as at `time` \[s\]. The caller keeps the clock.
+    fn tick(&mut self, time: f64, journal: &mut dyn Journal);
+}
+
+/// A clock that an importer can see. It holds no value and thus has no row in the table of values.
+#[derive(Debug)]
+pub struct ClockVariable {
+    pub name: &'static str,
+    pub description: &'static str,
+    /// Whether the importer makes it tick, otherwise the unit does.
+    pub is_input: bool,
+}
+
+/// Every sampled unit has these two, with the value references that follow those of its table.
+///
+/// No other variable is bound to them (FMI 3.0: attribute `clocks`). Bound variables may be read at a tick only, so
+/// that importers without events could not read the outputs at all; the outputs are states that hold what the last
+/// tick has left, as they do in FMI 2.0.
+pub static CLOCKS: [ClockVariable; 2] = [
+    ClockVariable {
+        name: "tick",
+        description: "Ticks every sample_time, at multiples of it: runs observer and law",
+        is_input: true,
+    },
+    ClockVariable { name: "ticked", description: "A tick has set the outputs anew", is_input: false },
+];
+/// Places in [`CLOCKS`].
+pub const TICK: usize = 0;
+pub const TICKED: usize = 1;
+
+impl Description {
+    /// Clocks with their value references.
+    pub fn clocks(&self) -> impl Iterator<Item = (usize, &'static ClockVariable)> + use<> {
+        let count = if self.is_sampled() { CLOCKS.len() } else { 0 };
+        (self.variables.len()..).zip(&CLOCKS[..count])
+    }
+}

@@ -1,0 +1,218 @@
+//! Event mode of the sampled units: when events are announced, what happens at them, and what clocks tell.
+
+use core::ptr::null_mut;
+
+use maglev_fmu::fmi::fmi3::*;
+
+use super::harness::clocked::{Choices, Step, Update, co_simulation, sampled_units};
+use super::harness::{CONTROLLER, Component, ERROR, OK, PLANT, Phase, Recorder, Standard};
+
+const EVENTS: Choices = Choices { event_mode: true, early_return: true, intermediate_update: None };
+
+/// In the event mode that follows initialisation.
+fn initialised(unit: &str, start_time: f64) -> Component {
+    let component = Component::co_simulation(unit, EVENTS);
+    component.initialise(start_time);
+    component
+}
+
+/// In step mode, the events at the start behind it.
+fn stepping(unit: &str) -> Component {
+    let component = initialised(unit, 0.0);
+    component.settle_event();
+    assert_eq!(component.enter_step_mode(), OK);
+    component.recorder.clear();
+    component
+}
+
+#[test]
+fn steps_end_at_ticks() {
+    for unit in sampled_units() {
+        let component = initialised(unit, 0.0);
+        assert_eq!(component.set("sample_time", 1e-3), ERROR, "fixed");
+        let period = component.get("sample_time");
+        assert_eq!(component.settle_event(), period);
+        assert_eq!(component.get("tick_time"), 0.0);
+        assert_eq!(component.enter_step_mode(), OK);
+
+        let (h, mut time) = (2.5 * period, 0.0);
+        let early = Step { status: OK, is_event: true, is_early: true, reached: period };
+        assert_eq!(component.step_to_event(time, h), early);
+        assert_eq!(component.get("time"), period);
+        assert_eq!(component.get("tick_time"), 0.0, "the tick is the importer's to run");
+        // Until it does, time stands still.
+        let again = component.step_to_event(period, h);
+        assert_eq!(again, Step { reached: period, ..early });
+
+        assert_eq!(component.enter_event_mode(), OK);
+        assert_eq!(component.settle_event(), 2.0 * period);
+        assert_eq!(component.get("tick_time"), period);
+        assert_eq!(component.enter_step_mode(), OK);
+        time += period;
+        // A tick at the end is an event, too, but ends nothing early.
+        let step = component.step_to_event(time, period);
+        assert_eq!(step, Step { is_early: false, reached: time + period, ..early });
+        // Half a period on there is none.
+        assert_eq!(component.enter_event_mode(), OK);
+        component.settle_event();
+        assert_eq!(component.enter_step_mode(), OK);
+        let step = component.step_to_event(step.reached, 0.5 * period);
+        assert!(!step.is_event && !step.is_early);
+        // An event for any other reason runs no tick.
+        assert_eq!(component.enter_event_mode(), OK);
+        let update = component.end_event_iteration();
+        assert_eq!(update, Update { status: OK, is_unfinished: false, next_event_time: Some(3.0 * period) });
+        assert_eq!(component.get("tick_time"), 2.0 * period);
+    }
+}
+
+#[test]
+fn the_output_clock_is_active_once_the_outputs_are_new() {
+    for unit in sampled_units() {
+        let component = initialised(unit, 0.0);
+        let [tick, ticked] = component.clocks();
+        let before = component.snapshot();
+        assert_eq!(component.get_clock(ticked), (OK, 0));
+        assert_eq!(component.get_clock(tick), (OK, 0));
+        assert_eq!(component.set_clock(tick, 1), OK);
+        assert_eq!(component.get_clock(tick), (OK, 1));
+        assert_eq!(component.snapshot(), before, "nothing happens before the end of the iteration");
+
+        let update = component.end_event_iteration();
+        assert!(update.is_unfinished);
+        assert_eq!([component.get_clock(tick), component.get_clock(ticked)], [(OK, 0), (OK, 1)]);
+        assert_eq!(
+            component.snapshot() != before,
+            unit != "MaglevRigController",
+            "which starts from its inputs"
+        );
+        // A second activation at this instant changes nothing.
+        let after = component.snapshot();
+        assert_eq!(component.set_clock(tick, 1), OK);
+        let update = component.end_event_iteration();
+        assert!(!update.is_unfinished);
+        assert_eq!(component.snapshot(), after);
+        assert_eq!([component.get_clock(tick), component.get_clock(ticked)], [(OK, 0), (OK, 0)]);
+    }
+}
+
+#[test]
+fn clocks_are_refused_where_they_make_no_sense() {
+    let component = initialised(CONTROLLER, 0.0);
+    let [tick, ticked] = component.clocks();
+    component.settle_event();
+    component.recorder.clear();
+    component
+        .assert_refused(component.set_clock(tick, 1), &["no tick is due at t = 0 s: expected t = 0.001 s"]);
+    component.assert_refused(component.set_clock(ticked, 1), &["ticked", "the unit itself activates"]);
+    component.assert_refused(component.set_clock(ticked + 1, 1), &["value reference", "is unknown"]);
+    component
+        .assert_refused(component.get_clock(0).0, &["time (value reference 0) is a variable, not a clock"]);
+    component
+        .assert_refused(component.get_reals(&[tick], &mut [0.0]), &["tick", "is a clock, not a Float64"]);
+    assert_eq!(component.set_clock(tick, 0), OK);
+    let due = initialised(CONTROLLER, 0.0);
+    assert_eq!(due.set_clock(tick, 1), OK);
+    due.recorder.clear();
+    due.assert_refused(due.set_clock(tick, 0), &["stays active"]);
+
+    assert_eq!(component.enter_step_mode(), OK);
+    component.assert_refused(component.get_clock(tick).0, &["step mode"]);
+    component.assert_refused(component.set_clock(tick, 1), &["step mode"]);
+}
+
+#[test]
+fn units_without_ticks_have_no_event_mode() {
+    let recorder = Recorder::default();
+    assert!(co_simulation(PLANT, EVENTS, recorder.environment()).is_null());
+    assert!(
+        recorder.messages().last().unwrap().text.contains("does not offer co-simulation with event mode")
+    );
+    for unit in [PLANT, CONTROLLER] {
+        let component = Component::in_phase(Standard::Fmi3, unit, Phase::Step);
+        component.assert_refused(component.enter_event_mode(), &["fmi3EnterEventMode: not offered"]);
+    }
+}
+
+#[test]
+fn the_phase_decides_what_may_be_called() {
+    let component = initialised(CONTROLLER, 0.0);
+    component.recorder.clear();
+    component.assert_refused(component.step_to_event(0.0, 1e-3).status, &["fmi3DoStep", "event mode"]);
+    component.assert_refused(component.enter_event_mode(), &["event mode"]);
+    component.assert_refused(component.activate(0.0), &["event mode"]);
+    assert_eq!(component.set("controller.k2", 1.0), OK);
+    component.assert_refused(component.set("sample_time", 0.1), &["a fixed parameter"]);
+    assert_eq!(component.enter_step_mode(), OK);
+    component.assert_refused(component.end_event_iteration().status, &["step mode"]);
+    component.assert_refused(component.enter_step_mode(), &["step mode"]);
+    // SAFETY: a live handle.
+    let status = unsafe { fmi3EvaluateDiscreteStates(component.handle) };
+    component.assert_refused(status, &["step mode"]);
+    assert_eq!(component.enter_event_mode(), OK);
+    // SAFETY: a live handle.
+    let status = unsafe { fmi3EvaluateDiscreteStates(component.handle) };
+    component.assert_refused(status, &["providesEvaluateDiscreteStates = false"]);
+    // SAFETY: a live handle; the results are not wanted.
+    let status = unsafe {
+        let none = null_mut();
+        fmi3UpdateDiscreteStates(component.handle, none, none, none, none, none, null_mut())
+    };
+    assert_eq!(status, OK);
+    assert_eq!(component.terminate(), OK);
+    assert_eq!(component.reset(), OK);
+    component.initialise(0.0);
+    assert!(component.end_event_iteration().is_unfinished, "the first tick, again");
+}
+
+#[test]
+fn a_start_between_two_ticks_waits_for_the_next_one() {
+    let component = initialised(CONTROLLER, 0.0025);
+    let update = component.end_event_iteration();
+    assert_eq!((update.is_unfinished, update.next_event_time), (false, Some(0.003)));
+    assert_eq!(component.enter_step_mode(), OK);
+    let step = component.step_to_event(0.0025, 0.1);
+    assert_eq!((step.is_event, step.is_early, step.reached), (true, true, 0.003));
+}
+
+#[test]
+fn a_refused_step_changes_nothing() {
+    let component = stepping(CONTROLLER);
+    let before = component.snapshot();
+    for (time, h) in [(0.0, 0.0), (0.0, f64::NAN), (1.0, 1e-3), (0.0, f64::INFINITY), (f64::NAN, 1e-3)] {
+        let step = component.step_to_event(time, h);
+        assert_eq!((step.status, step.is_event, step.is_early, step.reached), (ERROR, false, false, 0.0));
+    }
+    assert_eq!(component.snapshot(), before);
+    // Any step that would be too long otherwise ends at the next tick.
+    assert_eq!(component.step_to_event(0.0, 1e300).reached, 1e-3);
+}
+
+#[test]
+fn a_state_saved_at_an_event_goes_on_with_the_event() {
+    let component = initialised(CONTROLLER, 0.0);
+    let [tick, ticked] = component.clocks();
+    assert_eq!(component.set_clock(tick, 1), OK);
+    let set = component.saved_bytes();
+    component.end_event_iteration();
+    let has_ticked = component.saved_bytes();
+    assert_eq!(component.restore_bytes(&set), OK);
+    assert_eq!([component.get_clock(tick), component.get_clock(ticked)], [(OK, 1), (OK, 0)]);
+    let other = Component::co_simulation(CONTROLLER, EVENTS);
+    assert_eq!(other.restore_bytes(&has_ticked), OK);
+    assert_eq!([other.get_clock(tick), other.get_clock(ticked)], [(OK, 0), (OK, 1)]);
+    assert_eq!(other.settle_event(), 1e-3);
+
+    // An instance without event mode, or of FMI 2.0, cannot go on from there.
+    for standard in [Standard::Fmi2, Standard::Fmi3] {
+        let simple = Component::new(standard, CONTROLLER);
+        simple.recorder.clear();
+        simple.assert_refused(simple.restore_bytes(&set), &["event mode", "never reaches"]);
+        // From step mode it can, whatever made the ticks before.
+        let source = stepping(CONTROLLER);
+        assert_eq!(simple.restore_bytes(&source.saved_bytes()), OK);
+        assert_eq!(simple.step(0.0, 1e-3), OK);
+        assert_eq!(simple.step(1e-3, 1e-3), OK);
+        assert_eq!(simple.get("tick_time"), 1e-3);
+    }
+}

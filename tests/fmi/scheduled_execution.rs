@@ -1,0 +1,164 @@
+//! Scheduled execution of the sampled units: intervals of the clock, activations, callbacks.
+
+use core::cell::Cell;
+use core::ffi::c_void;
+
+use maglev_fmu::fmi::fmi3::types::{FMI3_INTERVAL_CHANGED, FMI3_INTERVAL_UNCHANGED};
+use maglev_fmu::fmi::fmi3::*;
+
+use super::harness::clocked::sampled_units;
+use super::harness::{CONTROLLER, Component, ERROR, OK};
+
+type Timing = ([f64; 2], [(u64, u64); 2], [i32; 2]);
+
+/// Interval and shift of `tick`: as decimals, as fractions, and the qualifiers.
+fn timing(component: &Component) -> Option<Timing> {
+    let tick = component.clocks()[0];
+    let (mut interval, mut shift, mut qualifiers) = (0.0, 0.0, [7; 2]);
+    let mut fractions = [(0, 0); 2];
+    let [(c0, r0), (c1, r1)] = &mut fractions;
+    // SAFETY: a live handle, one reference, room for the results.
+    let statuses = unsafe {
+        let handle = component.handle;
+        let [decimal, fraction] = &mut qualifiers;
+        [
+            fmi3GetIntervalDecimal(handle, &tick, 1, &mut interval, decimal),
+            fmi3GetIntervalFraction(handle, &tick, 1, c0, r0, fraction),
+            fmi3GetShiftDecimal(handle, &tick, 1, &mut shift),
+            fmi3GetShiftFraction(handle, &tick, 1, c1, r1),
+        ]
+    };
+    (statuses == [OK; 4]).then_some(([interval, shift], fractions, qualifiers))
+}
+
+#[test]
+fn intervals_follow_from_the_sample_time() {
+    let component = Component::scheduled(CONTROLLER, None);
+    assert_eq!(timing(&component), None, "before initialisation");
+    assert_eq!(component.enter_initialization(0.0025, None), OK);
+    let changed = [FMI3_INTERVAL_CHANGED; 2];
+    let (decimals, fractions, qualifiers) = timing(&component).unwrap();
+    assert_eq!((decimals[0], fractions[0], qualifiers), (1e-3, (1, 1000), changed));
+    assert!((decimals[1] - 5e-4).abs() < 1e-15, "{decimals:?}");
+    assert_eq!(component.set("sample_time", 0.3e-3), OK);
+    let (decimals, fractions, _) = timing(&component).unwrap();
+    assert_eq!((decimals[0], fractions[0]), (0.3e-3, (3, 10_000)));
+    assert!((decimals[1] - 2e-4).abs() < 1e-15, "the first tick is at 2.7 ms");
+    assert_eq!(fractions[1].0 as f64 / fractions[1].1 as f64, decimals[1]);
+
+    assert_eq!(component.exit_initialization(), OK);
+    let (mut interval, mut qualifier) = (0.0, 7);
+    // SAFETY: a live handle, one reference, room for the results.
+    let status = unsafe {
+        fmi3GetIntervalDecimal(component.handle, &component.clocks()[0], 1, &mut interval, &mut qualifier)
+    };
+    assert_eq!((status, interval, qualifier), (OK, 0.3e-3, FMI3_INTERVAL_UNCHANGED));
+    component.recorder.clear();
+    // SAFETY: a live handle, one reference.
+    let refused = unsafe { fmi3SetIntervalDecimal(component.handle, &component.clocks()[0], 1, &interval) };
+    component.assert_refused(refused, &["fmi3SetIntervalDecimal: not offered", "sample_time"]);
+    // SAFETY: a live handle, one reference, room for the results.
+    let refused = unsafe {
+        fmi3GetIntervalDecimal(component.handle, &component.clocks()[1], 1, &mut interval, &mut qualifier)
+    };
+    component.assert_refused(refused, &["ticked"]);
+}
+
+#[test]
+fn activations_run_ticks() {
+    for unit in sampled_units() {
+        let component = Component::scheduled(unit, None);
+        component.initialise(0.0);
+        let [_, ticked] = component.clocks();
+        for k in 0..5 {
+            let time = f64::from(k) * component.get("sample_time");
+            assert_eq!(component.activate(time), OK);
+            assert_eq!((component.get("time"), component.get("tick_time")), (time, time));
+            assert_eq!(component.get_clock(ticked), (OK, 1), "told once");
+            assert_eq!(component.get_clock(ticked), (OK, 0));
+        }
+        // The scheduler decides about time: off the grid, too.
+        assert_eq!(component.activate(0.123_45), OK);
+        assert_eq!(component.get("tick_time"), 0.123_45);
+        assert_eq!(component.terminate(), OK);
+    }
+}
+
+#[test]
+fn times_that_do_not_follow_are_refused() {
+    let component = Component::scheduled(CONTROLLER, None);
+    component.initialise(1.0);
+    component.recorder.clear();
+    let before = component.snapshot();
+    for time in [0.5, f64::NAN, f64::INFINITY, -1.0] {
+        let said = format!("activationTime = {time} s: expected a finite time after 1 s");
+        component.assert_refused(component.activate(time), &["fmi3ActivateModelPartition: ", &said]);
+    }
+    assert_eq!(component.snapshot(), before);
+    assert_eq!(component.activate(1.0), OK);
+    component.recorder.clear();
+    component.assert_refused(component.activate(1.0), &["activationTime = 1 s"]);
+    let tick = component.clocks()[0];
+    for (clock, said) in [(tick + 1, "ticked"), (tick + 2, "is unknown"), (0, "is a variable, not a clock")] {
+        // SAFETY: a live handle.
+        let status = unsafe { fmi3ActivateModelPartition(component.handle, clock, 2.0) };
+        component.assert_refused(status, &[said]);
+    }
+    component.assert_refused(component.step(1.0, 1e-3), &["clock activation mode"]);
+    component.assert_refused(component.enter_event_mode(), &["clock activation mode"]);
+    component.assert_refused(component.set_clock(tick, 1), &["clock activation mode"]);
+}
+
+thread_local! {
+    /// The instance, and what the callback was told about the clock `ticked`.
+    static SUBJECT: Cell<(*mut c_void, u32)> = const { Cell::new((core::ptr::null_mut(), 0)) };
+    static TOLD: Cell<(u32, u32, i32)> = const { Cell::new((0, 0, 0)) };
+}
+
+unsafe extern "C" fn clock_update(_: *mut c_void) {
+    let (handle, ticked) = SUBJECT.get();
+    let (calls, active, refused) = TOLD.get();
+    let (mut first, mut second) = (7, 7);
+    // SAFETY: the handle lives, one reference, room for one value.
+    unsafe {
+        assert_eq!(fmi3GetClock(handle, &ticked, 1, &mut first), OK);
+        assert_eq!(fmi3GetClock(handle, &ticked, 1, &mut second), OK);
+        assert_eq!(second, 0);
+        // Nothing that belongs elsewhere.
+        let status = fmi3ActivateModelPartition(handle, ticked - 1, 1e9);
+        TOLD.set((calls + 1, active + u32::from(first), refused + status));
+    }
+}
+
+#[test]
+fn the_callback_may_ask_for_the_clock() {
+    let component = Component::scheduled(CONTROLLER, Some(clock_update));
+    component.initialise(0.0);
+    let [_, ticked] = component.clocks();
+    SUBJECT.set((component.handle, ticked));
+    for k in 0..4 {
+        assert_eq!(component.activate(f64::from(k) * 1e-3), OK);
+    }
+    assert_eq!(TOLD.get(), (4, 4, 4 * ERROR));
+    assert_eq!(component.get_clock(ticked), (OK, 0));
+    assert_eq!(component.get("tick_time"), 3e-3);
+}
+
+#[test]
+fn states_stay_among_scheduled_instances() {
+    let component = Component::scheduled(CONTROLLER, None);
+    component.initialise(0.0);
+    assert_eq!(component.set("position", 0.01), OK);
+    assert_eq!(component.activate(0.0), OK);
+    let bytes = component.saved_bytes();
+    let other = Component::scheduled(CONTROLLER, None);
+    assert_eq!(other.restore_bytes(&bytes), OK);
+    assert_eq!(other.activate(0.0), ERROR, "activated at this time before");
+    for instance in [&component, &other] {
+        assert_eq!(instance.activate(1e-3), OK);
+    }
+    assert_eq!(component.snapshot(), other.snapshot());
+    let stepped = Component::new(component.standard, CONTROLLER);
+    stepped.recorder.clear();
+    stepped.assert_refused(stepped.restore_bytes(&bytes), &["clock activation mode", "never reaches"]);
+}
