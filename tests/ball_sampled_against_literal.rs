@@ -118,6 +118,7 @@ fn observer(settings: &Settings, sample_time: f64) -> BallObserver {
             flux_offset: 0.0,
             velocity: settings.momentum_estimate / mass,
             position: None,
+            filters_from_zero: false,
         },
     )
 }

@@ -14,7 +14,7 @@
 //! (17) and (20) are reconstructions, as the regression is. Between samples the voltage is constant and the current nearly an
 //! exponential; [`Course`] follows it more closely than a straight line would.
 
-use super::flux_mixing::{FluxMixing, MixingSettings};
+use super::flux_mixing::{FluxMixing, MixingSettings, normalised};
 use super::flux_regression::{FluxRegression, FluxRegressionSettings, Sample, residual_and_slope};
 use super::polynomial_newton::limited_error;
 use crate::plant::levitated_ball::{LevitatedBall, State};
@@ -35,6 +35,8 @@ pub enum Adaptation {
 pub enum FluxEstimator {
     /// Proposition 6
     Mixing(MixingSettings),
+    /// The same with a normalised gain, see [`normalised`]; not in the paper.
+    NormalisedMixing { mixing: MixingSettings, level: f64 },
     /// Beyond the paper, see [`super::polynomial_newton`].
     Newton {
         /// G \[1/s\]
@@ -74,6 +76,8 @@ pub struct InitialBallEstimate {
     pub velocity: f64,
     /// \[m\]; without it, from the first current and the flux.
     pub position: Option<f64>,
+    /// Whether all filters start from zero instead of from a ball at rest. It makes the start wrong: for studies.
+    pub filters_from_zero: bool,
 }
 
 /// Result of one sample.
@@ -142,7 +146,7 @@ impl Constants {
             filters: settings.filters.map(|rate| FirstOrderHold::low_pass(rate, *sample_time)),
             newton_share: match settings.estimator {
                 FluxEstimator::Newton { gain, .. } => -libm::expm1(-gain * sample_time),
-                FluxEstimator::Mixing(_) => 0.0,
+                FluxEstimator::Mixing(_) | FluxEstimator::NormalisedMixing { .. } => 0.0,
             },
         }
     }
@@ -189,9 +193,19 @@ impl Memory {
         let offset = initial.flux_offset / constants.flux;
         let flux = sample.flux + offset;
         let gap = settings.ball.gap;
-        let regression = FluxRegression::new(sample);
+        let regression = if initial.filters_from_zero {
+            FluxRegression::from_zero(sample)
+        } else {
+            FluxRegression::new(sample)
+        };
+        let coefficients = regression.coefficients(&constants.regression);
+        let mixing = if initial.filters_from_zero {
+            FluxMixing::from_zero(coefficients)
+        } else {
+            FluxMixing::at_rest(coefficients)
+        };
         Self {
-            mixing: FluxMixing::at_rest(regression.coefficients(&constants.regression)),
+            mixing,
             regression,
             offset,
             learnt: 0.0,
@@ -418,13 +432,17 @@ fn estimate_offset(settings: &BallObserverSettings, constants: &Constants, memor
     let coefficients = memory.regression.coefficients(&constants.regression);
     let held = memory.samples < settings.held_samples;
     match settings.estimator {
-        FluxEstimator::Mixing(mixing) => {
+        FluxEstimator::Mixing(mixing) | FluxEstimator::NormalisedMixing { mixing, .. } => {
             if held {
                 memory.mixing = FluxMixing::at_rest(coefficients);
                 return 0.0;
             }
             memory.mixing.advance(&constants.filters, coefficients);
             let equation = memory.mixing.mix();
+            let mixing = match settings.estimator {
+                FluxEstimator::NormalisedMixing { level, .. } => normalised(&mixing, level, &equation),
+                _ => mixing,
+            };
             memory.offset = equation.improve(&mixing, memory.offset, settings.sample_time);
             mixing.excitation_scale * equation.excitation
         }

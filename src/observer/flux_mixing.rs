@@ -46,6 +46,15 @@ impl MixedEquation {
     }
 }
 
+/// Gain of the gradient divided by `level`^2 + Delta^2, a common remedy against a Delta that spans decades; not in the
+/// paper.
+#[inline]
+pub fn normalised(settings: &MixingSettings, level: f64, equation: &MixedEquation) -> MixingSettings {
+    let excitation = settings.excitation_scale * equation.excitation;
+    let scale = level * level + excitation * excitation;
+    MixingSettings { gain: if scale > 0.0 { settings.gain / scale } else { 0.0 }, ..*settings }
+}
+
 /// The twenty low-passes by which the four filters are realised: H_j\[c\] = c - b_j / (p + b_j) \[c\].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FluxMixing {
@@ -58,6 +67,11 @@ impl FluxMixing {
     /// Filters that have seen nothing but `coefficients`, so that they put out zero.
     pub fn at_rest(coefficients: [f64; 5]) -> Self {
         Self { low_passes: [coefficients; 4], coefficients }
+    }
+
+    /// Filters that start from zero, so that they take the first coefficients for a jump.
+    pub fn from_zero(coefficients: [f64; 5]) -> Self {
+        Self { low_passes: [[0.0; 5]; 4], coefficients }
     }
 
     /// Goes on to the next `coefficients`, with the low-passes over the time since the last ones.

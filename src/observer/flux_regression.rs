@@ -66,6 +66,11 @@ impl Prefilter {
         Self { current, flux: s, twice: s, force: force(s, s) }
     }
 
+    /// As if there had been nothing before.
+    fn from_zero() -> Self {
+        Self { current: 0.0, flux: 0.0, twice: 0.0, force: [0.0; 3] }
+    }
+
     #[inline(always)]
     fn advance(&mut self, hold: &FirstOrderHold, past: Sample, present: Sample) {
         let force_before = force(past.flux, self.twice);
@@ -105,6 +110,11 @@ impl FluxRegression {
     /// A regression for a ball that has been at rest until `sample`; otherwise it is wrong by what decays with the rates.
     pub fn new(sample: Sample) -> Self {
         Self { prefilters: [Prefilter::at_rest(sample); 2], sample }
+    }
+
+    /// A regression whose low-passes start from zero: wrong by what decays with the rates, whatever the ball did.
+    pub fn from_zero(sample: Sample) -> Self {
+        Self { prefilters: [Prefilter::from_zero(); 2], sample }
     }
 
     /// Goes on to `sample`, with the low-passes of the settings' rates over the time since the last one.

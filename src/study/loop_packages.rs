@@ -32,6 +32,11 @@ impl LoopPackages {
         with_parameters(&self.plant, "plant", parameters)
     }
 
+    /// A controller with parameters, to be initialised.
+    pub fn controller(&self, parameters: &[Parameter<'_>]) -> Result<Instance, HostError> {
+        with_parameters(&self.controller, "controller", parameters)
+    }
+
     /// Runs the loop, controller first, for `duration` \[s\] with a tick every `sample_time` \[s\]; the last row is at the
     /// end.
     pub fn simulate(
@@ -57,7 +62,7 @@ impl LoopPackages {
         stimulus: impl FnMut(f64, &mut Instance, &mut Instance) -> Result<(), HostError>,
     ) -> Result<Trace, StudyError> {
         let plant = self.plant(plant)?;
-        let mut controller = with_parameters(&self.controller, "controller", controller)?;
+        let mut controller = self.controller(controller)?;
         controller.set_by_name("sample_time", sample_time)?;
         let System { sensing, actuation, .. } = self.system;
         let mut control_loop =

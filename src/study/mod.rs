@@ -3,6 +3,8 @@
 //! An experiment opens packages with the [`crate::host`], runs them, and hands back figures and claims; everything
 //! that is written to disk goes through [`output`].
 
+pub mod ball;
+pub mod ball_monte_carlo;
 pub mod bearing;
 pub mod bearing_observers;
 pub mod chart;
@@ -11,6 +13,9 @@ mod error;
 mod loop_packages;
 pub mod output;
 pub mod report;
+pub mod rig;
+mod rig_observers;
+pub mod tuning;
 
 use std::path::Path;
 
@@ -77,5 +82,25 @@ pub static EXPERIMENTS: &[Experiment] = &[
         name: "bearing-observers",
         summary: "all observers of the magnetic bearing under noise, next to the Cramer-Rao bound",
         run: bearing_observers::run,
+    },
+    Experiment {
+        name: "ball",
+        summary: "sensorless control of a levitated ball: figures 2 to 7 and the claims",
+        run: ball::run,
+    },
+    Experiment {
+        name: "ball-monte-carlo",
+        summary: "the levitated ball's estimators under wrong parameters and noise, 1000 runs each",
+        run: ball_monte_carlo::run,
+    },
+    Experiment {
+        name: "rig",
+        summary: "extended state observers of the maglev rig: Table 5, figures 3 and 5, the particle swarm and the claims",
+        run: rig::run,
+    },
+    Experiment {
+        name: "rig-observers",
+        summary: "maglev rig: pushed loops, noise against peaking, the observers of all papers on one plant",
+        run: rig_observers::run,
     },
 ];

@@ -33,10 +33,13 @@ fn estimator(values: &[f64; COUNT]) -> FluxEstimator {
             };
             FluxEstimator::Newton { gain, adaptation: Some((blamed, values[ADAPTATION_GAIN])) }
         }
-        _ => FluxEstimator::Mixing(MixingSettings {
-            gain: values[GAIN],
-            excitation_scale: values[EXCITATION_SCALE],
-        }),
+        _ => {
+            let mixing = MixingSettings { gain: values[GAIN], excitation_scale: values[EXCITATION_SCALE] };
+            match values[NORMALISATION] {
+                0.0 => FluxEstimator::Mixing(mixing),
+                level => FluxEstimator::NormalisedMixing { mixing, level },
+            }
+        }
     }
 }
 
@@ -46,6 +49,7 @@ pub(super) fn initial_estimate(values: &[f64; COUNT]) -> InitialBallEstimate {
         flux_offset: values[INITIAL_OFFSET],
         velocity: values[INITIAL_VELOCITY],
         position: (values[INITIAL_FROM_CURRENT] == 0.0).then_some(values[INITIAL_POSITION]),
+        filters_from_zero: values[FILTERS_FROM_ZERO] != 0.0,
     }
 }
 

@@ -91,7 +91,7 @@ variable_table! {
     ESTIMATE_POSITION = Variable::held_output("estimate.position", Kind::Real(&POSITION))
         .initially_from(&[
             "observer.initial.position_from_current", "observer.initial.position", "current", "gap",
-            "inductance_constant", "observer.initial.flux", "observer.initial.flux_offset", "mass", "gravity",
+            "mass", "gravity", "inductance_constant", "observer.initial.flux", "observer.initial.flux_offset",
         ])
         .describe("Estimate of y at the last tick");
     REFERENCE_POSITION = Variable::held_output("reference.position", Kind::Real(&POSITION))
@@ -104,7 +104,7 @@ variable_table! {
         .describe("Delta of drem at the last tick, scaled by observer.excitation_scale; 0 of the others");
     RESIDUAL = Variable::held_output("observer.residual", Kind::Real(&RATIO))
         .initially_from(&[
-            "observer.initial.flux", "observer.initial.flux_offset", "inductance_constant", "mass", "gravity",
+            "mass", "gravity", "inductance_constant", "observer.initial.flux", "observer.initial.flux_offset",
         ])
         .describe("What the normalised regression of degree 5 leaves at the estimated offset; 0 for the true one");
     ESTIMATED_RESISTANCE = Variable::held_output("observer.estimated_resistance", Kind::Real(&RESISTANCE_QUANTITY))
@@ -129,6 +129,9 @@ variable_table! {
     EXCITATION_SCALE = Variable::tunable("observer.excitation_scale", Kind::Real(&RATIO), 1e9)
         .range(0.0, 1e15)
         .describe("kappa of drem, a mere unit of its determinant; 1e9 suits the sinusoids, 1e10 the steps");
+    NORMALISATION = Variable::tunable("observer.normalisation", Kind::Real(&RATIO), 0.0)
+        .range(0.0, 1e15)
+        .describe("mu: if not 0, the gain of drem is divided by mu^2 + Delta^2; not in the paper");
     PREFILTER_1 = prefilter("observer.prefilter[1]", 100.0);
     PREFILTER_2 = prefilter("observer.prefilter[2]", 300.0);
     FILTER_1 = filter("observer.filter[1]", 10.0);
@@ -153,6 +156,8 @@ variable_table! {
     STARTUP_HOLD = Variable::parameter("observer.startup_hold", Kind::Real(&DURATION), 0.1)
         .range(0.0, 1e3)
         .describe("Time the offset stays frozen until the prefilters have forgotten the start");
+    FILTERS_FROM_ZERO = Variable::parameter("observer.filters_from_zero", Kind::Boolean, 0.0)
+        .describe("For studies: all filters start from zero instead of from a ball at rest, which makes the start wrong");
     INITIAL_FLUX = Variable::parameter("observer.initial.flux", Kind::Real(&FLUX), LABORATORY_FLUX)
         .range(-10.0, 10.0)
         .describe("chi(0), where the integral of the induced voltage starts; the start value is the flux that \

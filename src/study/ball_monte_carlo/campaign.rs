@@ -1,0 +1,79 @@
+//! All runs: every contender on every draw of every spread.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+
+use super::contender::Contender;
+use super::spread::SPREADS;
+use super::trial::{self, Outcome};
+use crate::signal::BallReference::{self, Sinusoids, Steps};
+use crate::study::loop_packages::LoopPackages;
+use crate::study::{Progress, StudyError};
+
+pub const REFERENCES: [BallReference; 2] = [Sinusoids, Steps];
+
+/// Outcomes by `[spread][reference][contender][run]`.
+pub struct Campaign {
+    pub outcomes: Vec<Vec<Vec<Vec<Outcome>>>>,
+}
+
+impl Campaign {
+    pub fn simulate(
+        packages: &LoopPackages,
+        contenders: &[Contender],
+        progress: Progress<'_>,
+    ) -> Result<Self, StudyError> {
+        let mut cases = Vec::new();
+        for (spread, widths) in SPREADS.iter().enumerate() {
+            for reference in 0..REFERENCES.len() {
+                for who in 0..contenders.len() {
+                    cases.extend((0..widths.runs).map(|run| (spread, reference, who, run)));
+                }
+            }
+        }
+        let done = AtomicUsize::new(0);
+        let outcomes = cases
+            .par_iter()
+            .map(|&(spread, reference, who, run)| {
+                let draw = SPREADS[spread].draw(run);
+                let outcome = trial::run(packages, &contenders[who], REFERENCES[reference], &draw)?;
+                let count = done.fetch_add(1, Ordering::Relaxed) + 1;
+                if count.is_multiple_of(50) {
+                    progress(count as f64 / cases.len() as f64, "ball-monte-carlo: simulating");
+                }
+                Ok(outcome)
+            })
+            .collect::<Result<Vec<Outcome>, StudyError>>()?;
+        let mut outcomes = outcomes.into_iter();
+        let outcomes = SPREADS
+            .iter()
+            .map(|spread| {
+                let mut runs = || outcomes.by_ref().take(spread.runs as usize).collect();
+                let mut by_contender = || contenders.iter().map(|_| runs()).collect();
+                REFERENCES.iter().map(|_| by_contender()).collect()
+            })
+            .collect();
+        Ok(Self { outcomes })
+    }
+
+    /// Runs of a contender.
+    pub fn of(&self, spread: usize, reference: usize, who: usize) -> &[Outcome] {
+        &self.outcomes[spread][reference][who]
+    }
+
+    /// Number of survivors.
+    pub fn survivors(&self, spread: usize, reference: usize, who: usize) -> usize {
+        self.of(spread, reference, who).iter().filter(|outcome| outcome.survived()).count()
+    }
+}
+
+/// Median over all runs, lost ones counting as infinite.
+pub fn median(outcomes: &[Outcome], value: impl Fn(&Outcome) -> f64) -> f64 {
+    let mut values: Vec<f64> = outcomes.iter().map(value).collect();
+    values.sort_by(f64::total_cmp);
+    match values.len() {
+        0 => f64::NAN,
+        count => 0.5 * (values[(count - 1) / 2] + values[count / 2]),
+    }
+}

@@ -1,0 +1,270 @@
+//! Distributions of the errors, what was lost, and DREM's tuning.
+
+use super::campaign::{Campaign, REFERENCES};
+use super::contender::{ADAPTIVE_OFFSET, ADAPTIVE_RESISTANCE, Contender, NEWTON};
+use super::spread::{Draw, SPREADS};
+use super::trial::Outcome;
+use super::tuning::{GAINS, NOISES, NORMALISATIONS, Score, Tuning};
+use crate::study::chart::{Figure, Panel, Series, Stroke};
+use crate::study::{FigureWithData, Table};
+
+/// Noiseless runs stand here on the axis of the noise \[A\].
+const NO_NOISE: f64 = 1e-6;
+
+pub fn all(tuning: &Tuning, contenders: &[Contender], campaign: &Campaign) -> Vec<FigureWithData> {
+    let position = distributions(
+        contenders,
+        campaign,
+        ("rms |y - y*| [mm]", 1e3, Outcome::position),
+        "Monte-Carlo: deviation from the wanted position",
+        "Share of all runs whose rms |y - y*| from 2 to 4 s is below the value on the axis. A curve ends at the share of \
+         runs that survive.",
+    );
+    let flux = distributions(
+        contenders,
+        campaign,
+        ("rms flux error / lam0 [%]", 100.0, Outcome::flux),
+        "Monte-Carlo: error of the flux estimate",
+        "The same for the error of the flux estimate: who survives without estimating the flux is not better off.",
+    );
+    let data = data(contenders, campaign);
+    vec![
+        FigureWithData { name: "ball_monte_carlo_position".to_owned(), figure: position, table: data },
+        FigureWithData {
+            name: "ball_monte_carlo_flux".to_owned(),
+            figure: flux,
+            table: medians(contenders, campaign),
+        },
+        losses(campaign),
+        tuning_figure(tuning),
+    ]
+}
+
+/// A panel per spread and reference with a cumulative distribution per contender.
+fn distributions(
+    contenders: &[Contender],
+    campaign: &Campaign,
+    (label, factor, value): (&str, f64, fn(&Outcome) -> f64),
+    title: &str,
+    caption: &str,
+) -> Figure {
+    let mut panels = Vec::new();
+    for (reference, signal) in REFERENCES.iter().enumerate() {
+        for (spread, widths) in SPREADS.iter().enumerate() {
+            let name = format!("{}, {signal:?}, {} runs", widths.name, widths.runs).to_lowercase();
+            let panel = Panel::new(format!("spread {}", capitalised(&name)), label, "share of runs [%]");
+            let panel = panel.x_logarithmic().from_to(0.0, 104.0);
+            panels.push(contenders.iter().enumerate().fold(panel, |panel, (who, contender)| {
+                let outcomes = campaign.of(spread, reference, who);
+                let mut values: Vec<f64> =
+                    outcomes.iter().map(value).filter(|value| value.is_finite()).collect();
+                values.sort_by(f64::total_cmp);
+                let share = |rank: usize| 100.0 * (rank + 1) as f64 / outcomes.len() as f64;
+                let points = values.iter().enumerate().map(|(rank, value)| (factor * value, share(rank)));
+                let legend = if spread + reference == 0 { contender.name } else { "" };
+                panel.with(Series::new(legend, who, Stroke::Held, points))
+            }));
+        }
+    }
+    let spreads: Vec<String> =
+        SPREADS.iter().map(|spread| format!("{}: {}", spread.name, spread.text())).collect();
+    Figure {
+        title: title.to_owned(),
+        caption: format!("{caption} Spreads: {}.", spreads.join("; ")),
+        columns: SPREADS.len(),
+        panels,
+    }
+}
+
+fn capitalised(text: &str) -> String {
+    let mut characters = text.chars();
+    characters.next().map_or_else(String::new, |first| first.to_uppercase().chain(characters).collect())
+}
+
+/// A row per run.
+fn data(contenders: &[Contender], campaign: &Campaign) -> Table {
+    let cases: Vec<(usize, usize, u32)> = (0..SPREADS.len())
+        .flat_map(|spread| (0..REFERENCES.len()).map(move |reference| (spread, reference)))
+        .flat_map(|(spread, reference)| (0..SPREADS[spread].runs).map(move |run| (spread, reference, run)))
+        .collect();
+    let mut table = Table::default();
+    let mut add = |header: String, value: &dyn Fn(usize, usize, u32) -> f64| {
+        table.headers.push(header);
+        table
+            .columns
+            .push(cases.iter().map(|&(spread, reference, run)| value(spread, reference, run)).collect());
+    };
+    add("spread [1 = A]".to_owned(), &|spread, _, _| (spread + 1) as f64);
+    add("reference [1 = sinusoids; 2 = steps]".to_owned(), &|_, reference, _| (reference + 1) as f64);
+    add("run [1]".to_owned(), &|_, _, run| f64::from(run));
+    let parts: [(&str, fn(&Draw) -> f64); 5] = [
+        ("resistance error [1]", |draw| draw.resistance),
+        ("inductance constant error [1]", |draw| draw.inductance_constant),
+        ("mass error [1]", |draw| draw.mass),
+        ("voltage offset [V]", |draw| draw.voltage_offset),
+        ("flux offset [1]", |draw| draw.flux),
+    ];
+    for (header, part) in parts {
+        add(header.to_owned(), &|spread, _, run| part(&SPREADS[spread].draw(run)));
+    }
+    for (who, contender) in contenders.iter().enumerate() {
+        let name = contender.name.replace(',', "");
+        let outcome =
+            |spread: usize, reference: usize, run: u32| campaign.of(spread, reference, who)[run as usize];
+        add(format!("{name}: rms position error; inf if lost [m]"), &|spread, reference, run| {
+            outcome(spread, reference, run).position()
+        });
+        add(format!("{name}: rms flux error; inf if lost [1]"), &|spread, reference, run| {
+            outcome(spread, reference, run).flux()
+        });
+        add(format!("{name}: time of the loss; inf if none [s]"), &|spread, reference, run| match outcome(
+            spread, reference, run,
+        ) {
+            Outcome::Lost { time } => time,
+            Outcome::Survived { .. } => f64::INFINITY,
+        });
+    }
+    table
+}
+
+/// A row per spread and reference.
+fn medians(contenders: &[Contender], campaign: &Campaign) -> Table {
+    let cases: Vec<(usize, usize)> = (0..SPREADS.len())
+        .flat_map(|spread| (0..REFERENCES.len()).map(move |reference| (spread, reference)))
+        .collect();
+    let mut table = Table::default();
+    let mut add = |header: String, value: &dyn Fn(usize, usize) -> f64| {
+        table.headers.push(header);
+        table.columns.push(cases.iter().map(|&(spread, reference)| value(spread, reference)).collect());
+    };
+    add("spread [1 = A]".to_owned(), &|spread, _| (spread + 1) as f64);
+    add("reference [1 = sinusoids; 2 = steps]".to_owned(), &|_, reference| (reference + 1) as f64);
+    add("runs [1]".to_owned(), &|spread, _| f64::from(SPREADS[spread].runs));
+    for (who, contender) in contenders.iter().enumerate() {
+        let name = contender.name.replace(',', "");
+        add(format!("{name}: survivors [1]"), &|spread, reference| {
+            campaign.survivors(spread, reference, who) as f64
+        });
+        add(format!("{name}: median rms position error [m]"), &|spread, reference| {
+            super::campaign::median(campaign.of(spread, reference, who), Outcome::position)
+        });
+        add(format!("{name}: median rms flux error [1]"), &|spread, reference| {
+            super::campaign::median(campaign.of(spread, reference, who), Outcome::flux)
+        });
+    }
+    table
+}
+
+/// Which runs the Newton variants lose, over the two errors that matter most.
+fn losses(campaign: &Campaign) -> FigureWithData {
+    let spread = 1;
+    let mut panels = Vec::new();
+    let mut table = Table::default();
+    let draws: Vec<Draw> = (0..SPREADS[spread].runs).map(|run| SPREADS[spread].draw(run)).collect();
+    table.headers.extend(["resistance error [1]".to_owned(), "flux offset [1]".to_owned()]);
+    table.columns.push(draws.iter().map(|draw| draw.resistance).collect());
+    table.columns.push(draws.iter().map(|draw| draw.flux).collect());
+    for (who, name) in [
+        (NEWTON, "Newton"),
+        (ADAPTIVE_RESISTANCE, "adaptive, resistance"),
+        (ADAPTIVE_OFFSET, "adaptive, offset"),
+    ] {
+        for (reference, signal) in REFERENCES.iter().enumerate() {
+            let outcomes = campaign.of(spread, reference, who);
+            let title = format!("{name}, {}", format!("{signal:?}").to_lowercase());
+            table.headers.push(format!("{}: lost [1]", title.replace(',', "")));
+            table
+                .columns
+                .push(outcomes.iter().map(|outcome| f64::from(u8::from(!outcome.survived()))).collect());
+            let points = |survived: bool| {
+                let chosen =
+                    draws.iter().zip(outcomes).filter(move |(_, outcome)| outcome.survived() == survived);
+                chosen.map(|(draw, _)| (100.0 * draw.flux, 100.0 * draw.resistance))
+            };
+            let legend = |text: &str| if panels.is_empty() { text.to_owned() } else { String::new() };
+            let panel = Panel::new(title, "initial flux offset [% of lam0]", "error of the resistance [%]")
+                .between(-10.5, 10.5)
+                .from_to(-3.2, 3.2)
+                .with(Series::new(legend("survived"), 8, Stroke::Dots, points(true)))
+                .with(Series::new(legend("lost"), 1, Stroke::Dots, points(false)));
+            panels.push(panel);
+        }
+    }
+    let figure = Figure {
+        title: "Which runs of spread B are lost".to_owned(),
+        caption: "Runs of spread B over the initial flux offset and the error of the resistance.".to_owned(),
+        columns: 2,
+        panels,
+    };
+    FigureWithData { name: "ball_monte_carlo_losses".to_owned(), figure, table }
+}
+
+/// Best DREM per gain and noise, and Newton beside it.
+fn tuning_figure(tuning: &Tuning) -> FigureWithData {
+    let axis = |noise: f64| noise.max(NO_NOISE);
+    let noise_label = "noise of the current (1e-6: none) [A]";
+    let mut flux = Panel::new("flux error, best filters", noise_label, "rms flux error / lam0 [%]")
+        .x_logarithmic()
+        .logarithmic();
+    let mut position =
+        Panel::new("deviation, best filters", noise_label, "rms |y - y*| [mm]").x_logarithmic().logarithmic();
+    let mut survival = Panel::new("survival, best filters", noise_label, "share of runs [%]")
+        .x_logarithmic()
+        .from_to(0.0, 104.0);
+    let mut table = Table::default();
+    table.headers.push("noise [A]".to_owned());
+    table.columns.push(NOISES.to_vec());
+    let mut colour = 0;
+    for normalisation in NORMALISATIONS {
+        for gain in GAINS {
+            let kind = if normalisation > 0.0 { "normalised, " } else { "" };
+            let label = format!("DREM {kind}gamma = {gain}");
+            let scores: Vec<_> =
+                (0..NOISES.len()).map(|noise| tuning.best_with(noise, gain, normalisation)).collect();
+            let stroke = if normalisation > 0.0 { Stroke::Dashed } else { Stroke::Solid };
+            let line = |value: fn(&Score) -> f64, factor: f64| {
+                NOISES
+                    .iter()
+                    .zip(&scores)
+                    .map(|(noise, score)| (axis(*noise), factor * value(score)))
+                    .collect::<Vec<_>>()
+            };
+            let shade = colour % GAINS.len();
+            flux = flux.with(Series::new("", shade, stroke, line(|score| score.flux, 100.0)));
+            position = position.with(Series::new("", shade, stroke, line(|score| score.position, 1e3)));
+            survival = survival.with(Series::new(&label, shade, stroke, line(|score| score.survival, 100.0)));
+            colour += 1;
+            let header = label.replace(',', "");
+            table.headers.extend([
+                format!("{header}: share of runs up [1]"),
+                format!("{header}: rms flux error [1]"),
+                format!("{header}: rms position error [m]"),
+            ]);
+            table.columns.push(scores.iter().map(|score| score.survival).collect());
+            table.columns.push(scores.iter().map(|score| score.flux).collect());
+            table.columns.push(scores.iter().map(|score| score.position).collect());
+        }
+    }
+    let newton = |value: fn(&Score) -> f64, factor: f64| {
+        NOISES
+            .iter()
+            .zip(&tuning.newton)
+            .map(|(noise, score)| (axis(*noise), factor * value(score)))
+            .collect::<Vec<_>>()
+    };
+    flux = flux.with(Series::new("", 6, Stroke::Solid, newton(|score| score.flux, 100.0)));
+    position = position.with(Series::new("", 6, Stroke::Solid, newton(|score| score.position, 1e3)));
+    survival = survival.with(Series::new("Newton", 6, Stroke::Solid, newton(|score| score.survival, 100.0)));
+    let figure = Figure {
+        title: "DREM at its best under noise, exact parameters".to_owned(),
+        caption: format!(
+            "For every gain, with and without normalisation, the best of six sets of filters at T = 0.1 ms; {} settings at \
+             each noise, both references, flux offsets of +5 and -5 %, two seeds. An rms flux error of 5 % is what not \
+             adapting leaves.",
+            tuning.settings.len()
+        ),
+        columns: 3,
+        panels: vec![survival, flux, position],
+    };
+    FigureWithData { name: "ball_drem_tuning".to_owned(), figure, table }
+}
