@@ -45,9 +45,9 @@ the Python tests run every cell again and fail if this page is not what they fou
 
 Each FMU carries a reference input and the output that belongs to it (`extra/org.fmi-standard.fmi-ls-ref`). A program
 that runs an FMU is given the one and has to return the other: *exact* means the same bits at every step, *to 1e-09*
-within that part of the largest magnitude of each variable, *to 1e-06* the same for states that the program's own
-integrator has solved for. *valid* and *read* are the words of checkers and readers. An empty cell: the unit does not
-offer that interface. *limit*: the program cannot do this with any FMU; its own words are below the table.
+within that part of the largest magnitude of each variable, *to 1e-06* the same, or within that part of its nominal
+value, for states that the program's own integrator has solved for. *valid* and *read* are the words of checkers and readers. An empty cell: the unit does not
+offer that interface. *limit*: the program cannot do this with any FMU of that kind; its own words are below the table.
 """
 
 

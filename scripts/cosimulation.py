@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -123,6 +124,19 @@ class Fmu:
         if kind == "Enumeration":
             kind = "Integer" if self.fmi_version == 2 else "Int64"
         return getattr(self.slave, verb + kind)
+
+
+def parameter_values(path: Path, unit: str) -> dict[str, Value]:
+    """Start values for `unit` from a parameter file, such as `maglev-fmu tune` writes; items of enumerations by number."""
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise ValueError(f"cannot read the parameter file {path}: {error}") from None
+    if not isinstance(content, dict) or not isinstance(content.get("values"), dict):
+        raise ValueError(f'{path} is no parameter file: expected {{"unit": NAME, "values": {{...}}}}')
+    if content.get("unit") != unit:
+        raise ValueError(f"{path} is for {content.get('unit')}: expected a file for {unit}")
+    return content["values"]
 
 
 def enumeration_items(variable: ModelVariable) -> dict[str, int]:

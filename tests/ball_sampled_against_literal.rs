@@ -118,6 +118,7 @@ fn observer(settings: &Settings, sample_time: f64) -> BallObserver {
             flux_offset: 0.0,
             velocity: settings.momentum_estimate / mass,
             position: None,
+            filters_from_zero: false,
         },
     )
 }
@@ -174,7 +175,7 @@ fn velocity_and_position_for_a_known_flux_converge_with_order_two() {
         let settings = Settings { flux_offset: 0.0, gain: 0.0, momentum_estimate: 1e-3, ..settings };
         let table = estimate_differences(settings, SUBSTEPS);
         let [flux, velocity, position] = table[1];
-        assert!(flux <= 1e-8 && velocity <= 5e-4 && position <= 2e-6, "{table:?}");
+        assert!(flux <= 1e-6 && velocity <= 5e-4 && position <= 2e-6, "{table:?}");
         assert_order_two(table.map(|row| row[1]), 0.2);
         assert_order_two(table.map(|row| row[2]), 0.2);
     }
@@ -185,17 +186,21 @@ fn estimates_for_a_wrong_flux_converge_with_order_two() {
     for settings in [Settings::sinusoids(), Settings::steps()] {
         let table = estimate_differences(Settings { gain: 0.0, ..settings }, SUBSTEPS);
         let [flux, velocity, position] = table[1];
-        assert!(flux <= 2e-4 && velocity <= 5e-3 && position <= 3e-4, "{table:?}");
+        assert!(flux <= 2e-6 && velocity <= 1e-3 && position <= 5e-6, "{table:?}");
         (0..3).for_each(|k| assert_order_two(table.map(|row| row[k]), 0.2));
     }
 }
 
+/// The shipped observer follows the current between samples and cuts samples longer than 0.1 ms, so that above that its
+/// error grows with order two at most.
 #[test]
-fn estimates_by_the_mixed_equation_converge_with_order_two() {
-    // What freezing Delta over a sample costs is of order one, but small next to the error of Q1 at these samples.
-    for (settings, limit) in [(Settings::sinusoids(), 5e-3), (Settings::steps(), 3e-2)] {
-        let table = estimate_differences(settings, 10);
-        assert!(table[1][0] <= limit, "{table:?}");
-        (0..3).for_each(|k| assert_order_two(table.map(|row| row[k]), 0.5));
+fn estimates_by_the_mixed_equation_converge() {
+    for (settings, limit) in [(Settings::sinusoids(), 1e-3), (Settings::steps(), 5e-3)] {
+        let [longest, middle, shortest] = estimate_differences(settings, 10);
+        assert!(middle[0] <= limit, "{middle:?}");
+        (0..3).for_each(|k| {
+            assert!(longest[k] <= 4.5 * middle[k], "{longest:?} {middle:?}");
+            assert!(shortest[k] <= middle[k] / 3.0, "{middle:?} {shortest:?}");
+        });
     }
 }

@@ -11,10 +11,12 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::ffi::CString;
 
+use harness::clocked::Choices;
 use harness::{
     BOTH, CONTROLLER, Component, ERROR, OK, PLANT, Standard, State, all, description, instantiate_with,
 };
 use maglev_fmu::fmi::fmi2::types::fmi2CallbackLogger;
+use maglev_fmu::fmi::fmi3::fmi3SetDebugLogging;
 
 thread_local! {
     /// Allocations, reallocations and releases of this thread.
@@ -182,6 +184,45 @@ fn states_are_one_block_each() {
             assert_eq!(uses_of_the_heap(|| assert_eq!(component.free_state(state), OK)), 1);
         }
         assert_eq!(BLOCKS.get(), before);
+    }
+}
+
+#[test]
+fn ticks_at_events_and_on_activation_use_no_heap() {
+    for unit in harness::clocked::sampled_units() {
+        let events = Choices { event_mode: true, early_return: true, intermediate_update: None };
+        let component = Component::co_simulation(unit, events);
+        component.initialise(0.0);
+        component.settle_event();
+        assert_eq!(component.enter_step_mode(), OK);
+        // Once the log has room for what the observers have to say, there is none of it.
+        // SAFETY: a live handle.
+        unsafe { fmi3SetDebugLogging(component.handle, 0, 0, null_mut()) };
+        let mut time = 0.0;
+        let uses = uses_of_the_heap(|| {
+            for _ in 0..200 {
+                let step = component.step_to_event(time, 1.0);
+                assert!(step.is_event && step.is_early);
+                time = step.reached;
+                assert_eq!(component.enter_event_mode(), OK);
+                assert_eq!(component.set_clock(component.clocks()[0], 1), OK);
+                component.settle_event();
+                assert_eq!(component.get_clock(component.clocks()[1]).0, OK);
+                assert_eq!(component.enter_step_mode(), OK);
+            }
+        });
+        assert_eq!(uses, 0, "{unit} at events");
+
+        let component = Component::scheduled(unit, None);
+        component.initialise(0.0);
+        // SAFETY: a live handle.
+        unsafe { fmi3SetDebugLogging(component.handle, 0, 0, null_mut()) };
+        let uses = uses_of_the_heap(|| {
+            for k in 0..200 {
+                assert_eq!(component.activate(f64::from(k) * 1e-3), OK);
+            }
+        });
+        assert_eq!(uses, 0, "{unit} on activation");
     }
 }
 

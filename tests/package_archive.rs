@@ -10,7 +10,7 @@ use maglev_fmu::package::{
     FmiVersion, GenerationTime, Library, PackageError, build, icon_png, model_description,
 };
 use maglev_fmu::unit::system::SYSTEMS;
-use maglev_fmu::unit::{UNITS, UnitType};
+use maglev_fmu::unit::{StartValues, UNITS, UnitType};
 use zip::ZipArchive;
 
 const TIME: u32 = 1_234_567_891;
@@ -103,7 +103,7 @@ fn archives_hold_what_the_standards_name() {
             assert_eq!(names, expected);
 
             let time = Some(GenerationTime::from_epoch_seconds(TIME));
-            let description = model_description(unit.description, version, time).unwrap();
+            let description = model_description(unit.description, StartValues::TABLE, version, time).unwrap();
             assert_eq!(file(&mut archive, "modelDescription.xml"), description.as_bytes());
             for icon in own_icon.into_iter().chain(["terminalsAndIcons/icon.png"]) {
                 assert!(file(&mut archive, icon).starts_with(b"\x89PNG\r\n\x1a\n"));

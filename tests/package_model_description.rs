@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use maglev_fmu::package::{Capabilities, FmiVersion, GenerationTime, model_description};
 use maglev_fmu::unit::variable::{Causality, DependencyKind, Kind};
-use maglev_fmu::unit::{Description, UNITS};
+use maglev_fmu::unit::{Description, StartValues, UNITS};
 use package_xml::Element;
 
 /// A variable of either standard.
@@ -68,7 +68,7 @@ fn units(root: &Element) -> BTreeMap<&str, Vec<&str>> {
 fn check_all(check: impl Fn(&'static Description, FmiVersion, &Element)) {
     for version in FmiVersion::ALL {
         for unit in UNITS {
-            let text = model_description(unit.description, version, None).unwrap();
+            let text = model_description(unit.description, StartValues::TABLE, version, None).unwrap();
             check(unit.description, version, &Element::parse(&text));
         }
     }
@@ -104,7 +104,9 @@ fn heads_name_the_unit_and_its_token() {
 fn packages_carry_their_time() {
     let time = Some(GenerationTime::from_epoch_seconds(1_234_567_890));
     for version in FmiVersion::ALL {
-        let root = Element::parse(&model_description(UNITS[0].description, version, time).unwrap());
+        let root = Element::parse(
+            &model_description(UNITS[0].description, StartValues::TABLE, version, time).unwrap(),
+        );
         assert_eq!(root.attribute("generationDateAndTime"), Some("2009-02-13T23:31:30Z"));
     }
 }

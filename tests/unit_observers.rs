@@ -15,7 +15,7 @@ use maglev_fmu::observer::reduced_newton::{ReducedNewtonObserver, ReducedNewtonS
 use maglev_fmu::observer::windowed_newton::{WindowedNewtonObserver, WindowedNewtonSettings};
 use maglev_fmu::package::{FmiVersion, GenerationTime, Library, contents};
 use maglev_fmu::plant::magnetic_bearing::{MagneticBearing, Map};
-use maglev_fmu::unit::{MagneticBearingController, Silence, Unit};
+use maglev_fmu::unit::{MagneticBearingController, Silence, StartValues, Unit};
 use native::{APPLIED, OBSERVERS, get, set};
 use sampled_loop::{Experiment, OBSERVER_START, T, law_a, state_feedback};
 use zip::write::SimpleFileOptions;
@@ -151,7 +151,7 @@ fn pack(version: FmiVersion, path: &Path) {
     let unit = MagneticBearingController::new();
     let time = GenerationTime::from_epoch_seconds(0);
     let mut archive = ZipWriter::new(File::create(path).unwrap());
-    for entry in contents(unit.description(), version, time, &[library]).unwrap() {
+    for entry in contents(unit.description(), StartValues::TABLE, version, time, &[library]).unwrap() {
         let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
         archive.start_file(entry.path, options).unwrap();
         archive.write_all(&entry.bytes).unwrap();

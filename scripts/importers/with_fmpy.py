@@ -9,7 +9,7 @@ import numpy as np
 from importers import CO_SIMULATION, MODEL_EXCHANGE, SCHEDULED_EXECUTION, Task
 from importers.reference import Reference
 
-# Of the largest magnitude that a state reaches, for the solution of an integrator.
+# For the solution of an integrator: of a state's nominal value, or of the largest magnitude that it reaches.
 INTEGRATION_TOLERANCE = 1e-6
 
 
@@ -71,9 +71,17 @@ def simulate_model_exchange(fmu: Path) -> str:
     )
     wanted = [[row[reference.outputs.index(name)] for name in names] for row in reference.output_rows[1:]]
     got, wanted = np.array(rows), np.array(wanted)
-    errors = np.abs(got - wanted).max(axis=0) / np.abs(wanted).max(axis=0)
+    scales = np.maximum(np.abs(wanted).max(axis=0), [nominal(variables, name) for name in names])
+    errors = np.abs(got - wanted).max(axis=0) / scales
     assert (errors <= INTEGRATION_TOLERANCE).all(), dict(zip(names, errors))
     return f"to {INTEGRATION_TOLERANCE:g}"
+
+
+def nominal(variables: list, name: str) -> float:
+    """Nominal value of a variable, which may stand in its type."""
+    variable = next(variable for variable in variables if variable.name == name)
+    of_type = variable.declaredType.nominal if variable.declaredType else None
+    return float(variable.nominal or of_type or 1.0)
 
 
 def schedule(fmu: Path) -> str:

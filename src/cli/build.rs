@@ -1,9 +1,11 @@
 //! `maglev-fmu build`
 
+use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use maglev_fmu::package::{self, GenerationTime, Library, PackageError};
+use maglev_fmu::package::{self, GenerationTime, Library, ParameterFile};
+use maglev_fmu::unit::{Description, StartValues};
 
 use super::{report, say};
 
@@ -16,11 +18,14 @@ pub struct Build {
     /// Shared library to pack instead of the one that was built with this program; may be given once per platform
     #[arg(long = "library", value_name = "PATH")]
     libraries: Vec<PathBuf>,
+    /// Parameter file whose values become the start values of its unit, such as `tune` writes; once per unit
+    #[arg(long = "parameters", value_name = "FILE")]
+    parameters: Vec<PathBuf>,
 }
 
 impl Default for Build {
     fn default() -> Self {
-        Self { out: "dist".into(), libraries: Vec::new() }
+        Self { out: "dist".into(), libraries: Vec::new(), parameters: Vec::new() }
     }
 }
 
@@ -30,7 +35,8 @@ impl Build {
         &self.out
     }
 
-    pub fn run(&self) -> Result<(), PackageError> {
+    pub fn run(&self) -> Result<(), Box<dyn Error>> {
+        let start_values = self.start_values()?;
         let libraries = match self.libraries.as_slice() {
             [] => vec![Library::of_this_build()?],
             paths => Library::read_all(paths)?,
@@ -39,7 +45,21 @@ impl Build {
         for library in &libraries {
             say(format_args!("{} for {}, source as of {time}", library.path().display(), library.platform()));
         }
-        package::build(&self.out, &libraries, time)?.iter().for_each(report);
+        package::build_with(&self.out, &start_values, &libraries, time)?.iter().for_each(report);
         Ok(())
+    }
+
+    fn start_values(&self) -> Result<Vec<(&'static Description, StartValues)>, Box<dyn Error>> {
+        let mut all: Vec<(&'static Description, StartValues)> = Vec::new();
+        for path in &self.parameters {
+            let (description, values) = ParameterFile::read(path)?
+                .start_values()
+                .map_err(|error| format!("{}: {error}", path.display()))?;
+            if all.iter().any(|(known, _)| std::ptr::eq(*known, description)) {
+                return Err(format!("{}: a second file for {}", path.display(), description.name).into());
+            }
+            all.push((description, values));
+        }
+        Ok(all)
     }
 }

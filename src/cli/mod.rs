@@ -4,6 +4,7 @@ mod build;
 mod describe;
 mod reproduce;
 mod trace;
+mod tune;
 
 use std::error::Error;
 use std::fmt;
@@ -29,6 +30,7 @@ enum Command {
     Reproduce(reproduce::Reproduce),
     Describe(describe::Describe),
     Trace(trace::Trace),
+    Tune(tune::Tune),
 }
 
 impl CommandLine {
@@ -40,10 +42,11 @@ impl CommandLine {
                 build.run()?;
                 reproduce::reproduce(EXPERIMENTS.iter(), build.out(), reproduce::RESULTS.as_ref())
             }
-            Some(Command::Build(command)) => Ok(command.run()?),
+            Some(Command::Build(command)) => command.run(),
             Some(Command::Reproduce(command)) => command.run(),
             Some(Command::Describe(command)) => Ok(command.run()?),
             Some(Command::Trace(command)) => command.run(),
+            Some(Command::Tune(command)) => command.run(),
         }
     }
 }

@@ -8,8 +8,9 @@ use super::intermediate_update::{IntermediateUpdate, StepInProgress};
 use super::saved_state::Life;
 use super::ticking::ClockStates;
 use super::{CallError, Callback, CommunicationPoint, Function, Interface, Logger, Phase};
+use crate::unit::start_values::read_token;
 use crate::unit::variable::Variable;
-use crate::unit::{ContinuousRows, Description, Journal, TIME, Topic, UNITS, Unit};
+use crate::unit::{ContinuousRows, Description, Journal, TIME, Topic, Unit};
 
 /// What a handle (`fmi2Component`, `fmi3Instance`) points to.
 pub struct Instance {
@@ -182,8 +183,8 @@ impl Instance {
     }
 }
 
-/// Makes an instance of the unit whose token is `token` for an interface type, or logs why not. `interface` is the name
-/// of what was asked for if no unit offers it.
+/// Makes an instance of the unit whose token is `token`, with the start values in it, for an interface type, or logs why
+/// not. `interface` is the name of what was asked for if no unit offers it.
 pub(super) fn instantiate(
     function: &str,
     name: Option<&CStr>,
@@ -201,10 +202,12 @@ pub(super) fn instantiate(
         }
     };
     let token = token.unwrap_or_default().to_str().unwrap_or_default();
-    let Some(unit) = UNITS.iter().find(|unit| unit.description.token().as_str() == token) else {
-        logger
-            .error(format_args!("{function}: the token \"{token}\" is none of this library: {KnownTokens}"));
-        return None;
+    let (unit, start_values) = match read_token(token) {
+        Ok(found) => found,
+        Err(error) => {
+            logger.error(format_args!("{function}: {error}"));
+            return None;
+        }
     };
     if !interface.is_offered_by(unit.description) {
         let (name, asked) = (unit.description.name, interface.name());
@@ -212,7 +215,9 @@ pub(super) fn instantiate(
         logger.error(format_args!("{function}: {name} does not offer {asked}, only {offered}"));
         return None;
     }
-    let mut instance = Instance::new((unit.create)(), interface, logger);
+    let mut made = (unit.create)();
+    start_values.apply(&mut *made);
+    let mut instance = Instance::new(made, interface, logger);
     instance.note(format_args!("{} instantiated", unit.description.name));
     Some(instance)
 }
@@ -225,18 +230,6 @@ impl fmt::Display for Offered {
         let offered = Interface::ALL.iter().filter(|interface| interface.is_offered_by(self.0));
         offered.enumerate().try_for_each(|(index, interface)| {
             write!(formatter, "{}{}", if index == 0 { "" } else { ", " }, interface.name())
-        })
-    }
-}
-
-/// All units with their tokens, for an error message.
-struct KnownTokens;
-
-impl fmt::Display for KnownTokens {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str("expected")?;
-        UNITS.iter().try_for_each(|unit| {
-            write!(formatter, " {} for {}", unit.description.token().as_str(), unit.description.name)
         })
     }
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::{FmiVersion, PackageError, WrittenFile, model_description, replace_file, variable_text};
 use crate::unit::variable::{Kind, Variable};
-use crate::unit::{Description, UNITS};
+use crate::unit::{Description, StartValues, UNITS};
 
 const BEGIN: &str = "<!-- variables:begin -->";
 const END: &str = "<!-- variables:end -->";
@@ -27,7 +27,7 @@ pub fn checked_in_files() -> Result<Vec<(PathBuf, String)>, PackageError> {
             let name = unit.description.name;
             let path =
                 Path::new("modelDescription").join(version.directory()).join(name).with_extension("xml");
-            files.push((path, model_description(unit.description, version, None)?));
+            files.push((path, model_description(unit.description, StartValues::TABLE, version, None)?));
         }
     }
     Ok(files)
@@ -82,7 +82,7 @@ fn table(description: &Description) -> String {
             variable.name,
             variable_text::kind(variable),
             variable_text::unit(variable),
-            variable_text::start(variable),
+            variable_text::start(variable, variable.start),
             meaning(variable).replace('|', "\\|"),
         );
     }

@@ -11,7 +11,7 @@ use super::reference_run::ReferenceRun;
 use super::related_files::related_files;
 use super::run_figure::run_figure;
 use super::{FmiVersion, GenerationTime, Library, PackageError, licenses};
-use crate::unit::Description;
+use crate::unit::{Description, StartValues};
 
 /// A file of a package.
 #[derive(Clone, Debug)]
@@ -41,14 +41,15 @@ pub fn diagram_name(system: &str) -> String {
 /// All files of the package of one unit, sorted by path.
 pub fn contents<'a>(
     description: &'static Description,
+    start_values: &StartValues,
     version: FmiVersion,
     time: GenerationTime,
     libraries: &'a [Library],
 ) -> Result<Vec<Entry<'a>>, PackageError> {
     let name = description.name;
     let mut files: Vec<(&str, Cow<'a, [u8]>)> = vec![
-        ("modelDescription.xml", owned(model_description(description, version, Some(time))?)),
-        ("documentation/index.html", owned(documentation(description, version, Some(time)))),
+        ("modelDescription.xml", owned(model_description(description, start_values, version, Some(time))?)),
+        ("documentation/index.html", owned(documentation(description, start_values, version, Some(time)))),
         ("documentation/licenses/license.txt", Cow::Borrowed(licenses::LICENSE.as_bytes())),
         ("documentation/licenses/THIRD-PARTY.txt", Cow::Borrowed(licenses::THIRD_PARTY.as_bytes())),
         ("documentation/licenses/Apache-2.0.txt", Cow::Borrowed(licenses::APACHE_2_0.as_bytes())),
@@ -68,8 +69,8 @@ pub fn contents<'a>(
         let path = format!("documentation/{}", diagram_name(plug.system.name));
         entries.push(Entry::document(path, owned(loop_diagram(plug.system, Some(description)))));
     }
-    let run =
-        ReferenceRun::of(description).map_err(|source| PackageError::ReferenceRun { unit: name, source })?;
+    let run = ReferenceRun::of(description, start_values)
+        .map_err(|source| PackageError::ReferenceRun { unit: name, source })?;
     entries.push(Entry::document(format!("documentation/{RUN_FIGURE}"), owned(run_figure(&run))));
     let related = related_files(description, &run)?;
     entries.extend(related.map(|(path, text)| Entry::document(path, owned(text))));

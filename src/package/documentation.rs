@@ -9,7 +9,7 @@ use super::model_description::enumerations;
 use super::plug::Plug;
 use super::related_files::{DIRECTORY, INPUT, OUTPUT};
 use super::{FmiVersion, GenerationTime, licenses, variable_text};
-use crate::unit::Description;
+use crate::unit::{Description, StartValues};
 
 pub(super) const STYLE: &str = "\
 body { font-family: sans-serif; line-height: 1.45; max-width: 70em; margin: 2em auto; padding: 0 1em; color: #1d2733; }
@@ -23,23 +23,28 @@ h1 img { height: 1.6em; vertical-align: middle; }
 ";
 
 /// The documentation page, self-contained.
-pub fn documentation(description: &Description, version: FmiVersion, time: Option<GenerationTime>) -> String {
+pub fn documentation(
+    description: &Description,
+    start_values: &StartValues,
+    version: FmiVersion,
+    time: Option<GenerationTime>,
+) -> String {
     let name = description.name;
     let summary = escape(description.summary);
     let paragraphs = lines(description.documentation.iter().map(|text| format!("<p>{}</p>", escape(*text))));
-    let variables = lines(description.variables.iter().map(|variable| {
+    let variables = lines(description.variables.iter().enumerate().map(|(reference, variable)| {
         row([
             code(variable.name),
             variable_text::kind(variable).into(),
             escape(variable_text::unit(variable)),
-            escape(variable_text::start(variable)),
+            escape(variable_text::start(variable, start_values.of(reference, variable))),
             escape(variable_text::range(variable)),
             escape(variable.description),
         ])
     }));
     let loops = loops(description);
     let choices = choices(description);
-    let provenance = provenance(description, version, time);
+    let provenance = provenance(description, start_values, version, time);
     format!(
         "<!DOCTYPE html>
 <html lang=\"en\">
@@ -106,7 +111,12 @@ fn choices(description: &Description) -> String {
     text
 }
 
-fn provenance(description: &Description, version: FmiVersion, time: Option<GenerationTime>) -> String {
+fn provenance(
+    description: &Description,
+    start_values: &StartValues,
+    version: FmiVersion,
+    time: Option<GenerationTime>,
+) -> String {
     let time = time.map_or(String::new(), |time| format!(", source as of {time}"));
     format!(
         "<p>Exported for FMI {version} by maglev-fmu {}{time}. Library, model description and this page come from \
@@ -114,7 +124,7 @@ fn provenance(description: &Description, version: FmiVersion, time: Option<Gener
          <p>{}, {} license: <a href=\"licenses/license.txt\">license.txt</a>. The library contains software of \
          others: <a href=\"licenses/THIRD-PARTY.txt\">THIRD-PARTY.txt</a>.</p>",
         env!("CARGO_PKG_VERSION"),
-        description.token().as_str(),
+        start_values.token(description),
         licenses::COPYRIGHT,
         licenses::NAME,
     )

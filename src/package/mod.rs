@@ -16,6 +16,7 @@ mod library;
 mod licenses;
 mod loop_diagram;
 mod model_description;
+pub mod parameter_file;
 mod platform;
 mod plug;
 mod reference_run;
@@ -38,12 +39,13 @@ pub use generation_time::GenerationTime;
 pub use icon::{icon_png, icon_svg};
 pub use library::Library;
 pub use model_description::model_description;
+pub use parameter_file::ParameterFile;
 pub use platform::Platform;
 pub use reference_run::{ReferenceRun, Table};
 pub use related_files::{DIRECTORY as RELATED_FILES, INPUT as REFERENCE_INPUT, OUTPUT as REFERENCE_OUTPUT};
 
-use crate::unit::UNITS;
 use crate::unit::system::SYSTEMS;
+use crate::unit::{Description, StartValues, UNITS};
 
 /// A file that was written.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -62,6 +64,17 @@ pub fn build(
     libraries: &[Library],
     time: GenerationTime,
 ) -> Result<Vec<WrittenFile>, PackageError> {
+    build_with(directory, &[], libraries, time)
+}
+
+/// As [`build`], with other start values for some units: their model descriptions say so, and so do their tokens, by
+/// which the library knows.
+pub fn build_with(
+    directory: &Path,
+    start_values: &[(&'static Description, StartValues)],
+    libraries: &[Library],
+    time: GenerationTime,
+) -> Result<Vec<WrittenFile>, PackageError> {
     let mut written = Vec::new();
     // Packages by unit that go into the systems.
     let mut for_systems = BTreeMap::new();
@@ -71,13 +84,16 @@ pub fn build(
             .map_err(|source| PackageError::Write { path: directory.clone(), source })?;
         for unit in UNITS {
             let path = directory.join(unit.description.name).with_extension("fmu");
-            let entries = contents(unit.description, version, time, libraries)?;
+            let own =
+                start_values.iter().find(|(description, _)| std::ptr::eq(*description, unit.description));
+            let own = own.map_or(StartValues::TABLE, |(_, values)| values);
+            let entries = contents(unit.description, own, version, time, libraries)?;
             let bytes = archive(&entries, time)
                 .map_err(|source| PackageError::Archive { path: path.clone(), source })?;
             replace_file(&path, &bytes)?;
             written.push(WrittenFile { path, size: bytes.len() });
             if version == system_structure::FMI_VERSION {
-                for_systems.insert(unit.description.name, bytes);
+                for_systems.insert(unit.description.name, (bytes, own));
             }
         }
     }

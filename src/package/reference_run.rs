@@ -1,12 +1,12 @@
 //! What a unit must answer to a given input: computed from the unit itself, without FMI, when the package is made.
 //!
-//! The inputs are those that the unit meets in its loop with start values everywhere. After a third of the run the
-//! inputs that the loop leaves free, such as a reference or a disturbing force, step by a twentieth of their nominal
-//! value, so that they matter as well.
+//! The inputs are those that the unit meets in its loop, with the package's start values in the unit and those of the
+//! table in its partner. After a third of the run the inputs that the loop leaves free, such as a reference or a disturbing
+//! force, step by a twentieth of their nominal value, so that they matter as well.
 
 use crate::unit::system::{SYSTEMS, System};
 use crate::unit::variable::{Causality, Kind, Variable};
-use crate::unit::{Description, Silence, UNITS, Unit, UnitError, UnitType};
+use crate::unit::{Description, Silence, StartValues, UNITS, Unit, UnitError, UnitType};
 
 /// Longest run \[s\]. The inputs of a reference run do not react to the plant, and levitation is unstable: what an
 /// importer rounds off its step size grows with e^(t / 20 ms) and worse.
@@ -35,8 +35,8 @@ impl ReferenceRun {
     /// Runs the loop of the unit described, controller first; a unit without a loop runs alone.
     ///
     /// Row k of the inputs holds over the step from k h to (k + 1) h, row k of the outputs at k h.
-    pub fn of(description: &'static Description) -> Result<Self, UnitError> {
-        let mut bench = Bench::new(description)?;
+    pub fn of(description: &'static Description, start_values: &StartValues) -> Result<Self, UnitError> {
+        let mut bench = Bench::new(description, start_values)?;
         let input = table_of(description, Causality::Input);
         let output = table_of(description, Causality::Output);
         let step_size = description.step_size;
@@ -121,7 +121,7 @@ const CONTROLLER: usize = 0;
 const PLANT: usize = 1;
 
 impl Bench {
-    fn new(description: &'static Description) -> Result<Self, UnitError> {
+    fn new(description: &'static Description, start_values: &StartValues) -> Result<Self, UnitError> {
         let is_it = |unit: &UnitType| std::ptr::eq(unit.description, description);
         let system = SYSTEMS.iter().copied().find(|system| is_it(system.plant) || is_it(system.controller));
         let (types, place) = match system {
@@ -131,6 +131,7 @@ impl Bench {
             None => (UNITS.iter().copied().filter(|unit| is_it(unit)).collect(), 0),
         };
         let mut units: Vec<Box<dyn Unit>> = types.iter().map(|unit| (unit.create)()).collect();
+        start_values.apply(&mut *units[place]);
         units.iter_mut().try_for_each(|unit| unit.initialise(0.0))?;
         let wires =
             system.map_or(&[][..], |system| if place == PLANT { system.actuation } else { system.sensing });
@@ -154,7 +155,7 @@ impl Bench {
         for &reference in &self.free {
             let variable = &unit.description().variables[reference];
             if let Kind::Real(quantity) = variable.kind {
-                let moved = variable.start + 0.05 * quantity.nominal;
+                let moved = unit.values()[reference] + 0.05 * quantity.nominal;
                 if variable.check(moved).is_ok() {
                     unit.values_mut()[reference] = moved;
                 }
@@ -199,7 +200,7 @@ mod tests {
     #[test]
     fn runs_are_complete_finite_and_repeatable() {
         for unit in UNITS {
-            let run = ReferenceRun::of(unit.description).unwrap();
+            let run = ReferenceRun::of(unit.description, StartValues::TABLE).unwrap();
             let steps = number_of_steps(unit.description);
             assert!((100..=MOST_STEPS).contains(&steps));
             assert_eq!((run.inputs.rows.len(), run.outputs.rows.len()), (steps, steps + 1));
@@ -213,7 +214,7 @@ mod tests {
                     );
                 }
             }
-            let again = ReferenceRun::of(unit.description).unwrap();
+            let again = ReferenceRun::of(unit.description, StartValues::TABLE).unwrap();
             assert_eq!(run.inputs.csv() + &run.outputs.csv(), again.inputs.csv() + &again.outputs.csv());
         }
     }
@@ -221,7 +222,7 @@ mod tests {
     #[test]
     fn a_unit_alone_answers_the_inputs_as_it_did_in_its_loop() {
         for unit in UNITS {
-            let run = ReferenceRun::of(unit.description).unwrap();
+            let run = ReferenceRun::of(unit.description, StartValues::TABLE).unwrap();
             let mut alone = (unit.create)();
             alone.initialise(0.0).unwrap();
             for ((_, inputs), (_, outputs)) in run.inputs.rows.iter().zip(&run.outputs.rows[1..]) {
@@ -238,7 +239,7 @@ mod tests {
     #[test]
     fn every_input_moves() {
         for unit in UNITS {
-            let run = ReferenceRun::of(unit.description).unwrap();
+            let run = ReferenceRun::of(unit.description, StartValues::TABLE).unwrap();
             for (column, variable) in run.inputs.variables.iter().enumerate() {
                 let first = run.inputs.rows[0].1[column];
                 let moves = run.inputs.rows.iter().any(|(_, values)| values[column] != first);

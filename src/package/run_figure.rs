@@ -101,7 +101,7 @@ mod tests {
     #[test]
     fn figures_show_every_real_variable() {
         for unit in UNITS {
-            let run = ReferenceRun::of(unit.description).unwrap();
+            let run = ReferenceRun::of(unit.description, crate::unit::StartValues::TABLE).unwrap();
             let text = run_figure(&run);
             resvg::usvg::Tree::from_str(&text, &resvg::usvg::Options::default()).unwrap();
             let variables = run.inputs.variables.iter().chain(&run.outputs.variables);

@@ -26,8 +26,8 @@ pub fn unit(variable: &Variable) -> &'static str {
 }
 
 /// Start value; empty if the unit computes the variable.
-pub fn start(variable: &Variable) -> String {
-    if variable.is_calculated() { String::new() } else { value(variable.kind, variable.start) }
+pub fn start(variable: &Variable, number: f64) -> String {
+    if variable.is_calculated() { String::new() } else { value(variable.kind, number) }
 }
 
 /// Smallest and largest value, as far as there are any.

@@ -15,6 +15,8 @@ pub enum StudyError {
     Write { path: PathBuf, source: std::io::Error },
     #[error("cannot draw {figure}: {reason}")]
     Draw { figure: String, reason: String },
+    #[error("the search failed: {reason}")]
+    Search { reason: String },
     #[error("cannot turn a table into CSV")]
     Csv(#[from] csv::Error),
     #[error("cannot turn the claims into JSON")]

@@ -13,6 +13,9 @@ mod error;
 mod loop_packages;
 pub mod output;
 pub mod report;
+pub mod rig;
+mod rig_observers;
+pub mod tuning;
 
 use std::path::Path;
 
@@ -89,5 +92,15 @@ pub static EXPERIMENTS: &[Experiment] = &[
         name: "ball-monte-carlo",
         summary: "the levitated ball's estimators under wrong parameters and noise, 1000 runs each",
         run: ball_monte_carlo::run,
+    },
+    Experiment {
+        name: "rig",
+        summary: "extended state observers of the maglev rig: Table 5, figures 3 and 5, the particle swarm and the claims",
+        run: rig::run,
+    },
+    Experiment {
+        name: "rig-observers",
+        summary: "maglev rig: pushed loops, noise against peaking, the observers of all papers on one plant",
+        run: rig_observers::run,
     },
 ];

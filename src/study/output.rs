@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::claim::Claim;
-use super::{Findings, StudyError, Table, chart, report};
+use super::{FigureWithData, Findings, StudyError, Table, chart, report};
 
 /// The claims of one experiment in `claims.json`.
 #[derive(Serialize)]
@@ -17,17 +17,11 @@ struct ExperimentClaims<'a> {
 
 /// Writes everything below `directory` and returns the report's path.
 pub fn write(directory: &Path, findings: &[Findings]) -> Result<PathBuf, StudyError> {
-    fs::create_dir_all(directory)
-        .map_err(|source| StudyError::Write { path: directory.to_owned(), source })?;
+    make_directory(directory)?;
     let mut pictures = Vec::new();
     for experiment in findings {
         for figure in &experiment.figures {
-            let svg = chart::svg(&figure.figure)?;
-            let file = |extension: &str| directory.join(format!("{}.{extension}", figure.name));
-            write_file(&file("svg"), svg.as_bytes())?;
-            write_file(&file("png"), &chart::png(&figure.figure, &svg)?)?;
-            write_file(&file("csv"), &csv(&figure.table)?)?;
-            pictures.push(svg);
+            pictures.push(write_figure(directory, figure)?);
         }
     }
     let claims: Vec<ExperimentClaims> = findings
@@ -38,6 +32,21 @@ pub fn write(directory: &Path, findings: &[Findings]) -> Result<PathBuf, StudyEr
     let path = directory.join("report.html");
     write_file(&path, report::html(findings, &pictures).as_bytes())?;
     Ok(path)
+}
+
+/// Writes a figure as SVG and PNG and its data as CSV and returns the SVG.
+pub fn write_figure(directory: &Path, figure: &FigureWithData) -> Result<String, StudyError> {
+    make_directory(directory)?;
+    let svg = chart::svg(&figure.figure)?;
+    let file = |extension: &str| directory.join(format!("{}.{extension}", figure.name));
+    write_file(&file("svg"), svg.as_bytes())?;
+    write_file(&file("png"), &chart::png(&figure.figure, &svg)?)?;
+    write_file(&file("csv"), &csv(&figure.table)?)?;
+    Ok(svg)
+}
+
+fn make_directory(path: &Path) -> Result<(), StudyError> {
+    fs::create_dir_all(path).map_err(|source| StudyError::Write { path: path.to_owned(), source })
 }
 
 /// Shortest decimal numbers that read back to the same bits; headers with commas are quoted.

@@ -17,6 +17,7 @@ pub mod persistence;
 pub mod quantity;
 pub mod sample_clock;
 pub mod sampled;
+pub mod start_values;
 pub mod system;
 pub mod value;
 pub mod variable;
@@ -33,6 +34,7 @@ pub use magnetic_bearing_controller::MagneticBearingController;
 pub use magnetic_bearing_plant::MagneticBearingPlant;
 pub use persistence::Persistent;
 pub use sampled::SampledUnit;
+pub use start_values::StartValues;
 pub use system::System;
 use thiserror::Error;
 

@@ -14,8 +14,8 @@ fn uniform(random: &mut Pcg32) -> f64 {
     (f64::from(random.next_u32()) + 0.5) / f64::from(u32::MAX)
 }
 
-/// A value that the variable may have: around its start, of either sign where it may be, for an input also far beyond
-/// what a driver gives and for a position around and beyond the stops.
+/// A value that the variable may have: around its start, of either sign where it may be, for inputs and voltages also
+/// far beyond what a driver gives and for a position around and beyond the stops.
 fn value(variable: &Variable, random: &mut Pcg32) -> f64 {
     let (minimum, maximum) = variable.range;
     let share = uniform(random);
@@ -24,17 +24,21 @@ fn value(variable: &Variable, random: &mut Pcg32) -> f64 {
         Kind::Real(_) if variable.name == "initial.position" => match choice {
             0.0..0.15 => minimum,
             0.15..0.3 => maximum,
-            0.3..0.7 => (0.012 * share).clamp(minimum, maximum),
+            0.3..0.5 => (0.003 * share).clamp(minimum, maximum),
+            0.5..0.75 => (0.012 * share).clamp(minimum, maximum),
             _ => (0.06 * share - 0.03).clamp(minimum, maximum),
         },
         Kind::Real(quantity) => {
+            let is_driven = variable.causality == Causality::Input || variable.name.contains("voltage");
             let size = match variable.start {
                 0.0 => 0.1 * quantity.nominal,
-                _ if variable.causality == Causality::Input && choice < 0.3 => 10.0 * quantity.nominal,
+                _ if is_driven && choice < 0.3 => 10.0 * quantity.nominal,
                 start => start,
             };
-            let sign = if uniform(random) < 0.3 { -1.0 } else { 1.0 };
-            (sign * size * (0.5 + share)).clamp(minimum, maximum)
+            let amount = size * (0.5 + share);
+            let may_be_negative = -amount >= minimum && -amount <= maximum;
+            let value = if may_be_negative && uniform(random) < 0.3 { -amount } else { amount };
+            value.clamp(minimum, maximum)
         }
         Kind::Integer => (minimum + share * 20.0).floor().min(maximum),
         Kind::Boolean => f64::from(u8::from(share > 0.5)),
@@ -49,15 +53,30 @@ fn rows(component: &Component, keep: impl Fn(&Variable) -> bool) -> Vec<u32> {
 /// Pairs (unknown, known) by name of which the unknown moved when the known was changed.
 type Moved = BTreeSet<(&'static str, &'static str)>;
 
+/// Whether a value moved by more than rounding, of which normalised equations leave some.
+fn has_moved(variable: &Variable, before: f64, after: f64) -> bool {
+    let size = match variable.kind {
+        Kind::Real(quantity) => quantity.nominal.max(before.abs()),
+        _ => 0.0,
+    };
+    (before - after).abs() > 1e-9 * size
+}
+
 /// Records which of `unknowns` move when `known` is changed by `change`, which may leave it as it was.
 fn record(component: &Component, unknowns: &[u32], known: u32, moved: &mut Moved, change: impl FnOnce()) {
-    let read =
-        || -> Vec<u64> { unknowns.iter().map(|row| component.get_reference(*row).1.to_bits()).collect() };
+    // Nothing where the unit refuses to be initialised with what it has been given.
+    let read = || -> Vec<Option<f64>> {
+        let values = unknowns.iter().map(|row| component.get_reference(*row));
+        values.map(|(status, value)| (status == OK).then_some(value)).collect()
+    };
     let before = read();
     change();
     for ((unknown, before), after) in unknowns.iter().zip(before).zip(read()) {
-        if before != after {
-            moved.insert((component.variable(*unknown).name, component.variable(known).name));
+        let variable = component.variable(*unknown);
+        if let (Some(before), Some(after)) = (before, after)
+            && has_moved(variable, before, after)
+        {
+            moved.insert((variable.name, component.variable(known).name));
         }
     }
 }
@@ -75,7 +94,7 @@ fn initial_values_follow_from_what_is_declared() {
             let is_listed = matches!(row.causality, Causality::Output | Causality::CalculatedParameter);
             is_listed || row.derivative_of.is_some()
         });
-        for _ in 0..500 {
+        for _ in 0..1500 {
             for known in &knowns {
                 let variable = component.variable(*known);
                 let base =

@@ -4,6 +4,8 @@ mod harness;
 
 mod allowed_calls_fmi2;
 mod allowed_calls_fmi3;
+#[cfg(feature = "tools")]
+mod capabilities;
 mod concurrency;
 mod dependencies;
 mod derivatives;
@@ -15,6 +17,7 @@ mod logging;
 mod model_exchange;
 mod panic;
 mod random_calls;
+mod random_exchange;
 mod refused_references;
 mod refused_values;
 mod saved_state;

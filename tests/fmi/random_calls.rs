@@ -10,6 +10,7 @@ use proptest::prelude::*;
 use proptest::sample::select;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
+use super::harness::clocked::Choices;
 use super::harness::{CONTROLLER, Component, ERROR, OK, PLANT, Standard, State};
 use super::{allowed_calls_fmi2, allowed_calls_fmi3};
 
@@ -54,6 +55,20 @@ enum Call {
         damage: Option<usize>,
     },
     FreeState,
+    EnterEventMode,
+    UpdateDiscreteStates,
+    EnterStepMode,
+    /// One of the clocks, or what is none.
+    SetClock {
+        clock: u32,
+        value: u8,
+    },
+    GetClock {
+        clock: u32,
+    },
+    Activate {
+        offset: f64,
+    },
     /// Row of the table of all functions.
     Any {
         row: usize,
@@ -100,6 +115,10 @@ fn call() -> impl Strategy<Value = Call> {
         3 => Just(Call::Restore),
         2 => prop::option::of(0..5000usize).prop_map(|damage| Call::Deserialise { damage }),
         1 => Just(Call::FreeState),
+        3 => select(vec![Call::EnterEventMode, Call::UpdateDiscreteStates, Call::EnterStepMode]),
+        1 => (0..3u32, 0..3u8).prop_map(|(clock, value)| Call::SetClock { clock, value }),
+        1 => (0..3u32).prop_map(|clock| Call::GetClock { clock }),
+        2 => prop_oneof![3 => Just(1e-3), 1 => number()].prop_map(|offset| Call::Activate { offset }),
         2 => (0..80usize).prop_map(|row| Call::Any { row }),
     ]
 }
@@ -111,8 +130,8 @@ struct Actor {
 }
 
 impl Actor {
-    fn new(standard: Standard, unit: &str) -> Self {
-        Self { component: Component::new(standard, unit), state: Cell::new(null_mut()) }
+    fn new(component: Component) -> Self {
+        Self { component, state: Cell::new(null_mut()) }
     }
 
     fn save(&self, anew: bool) -> i32 {
@@ -155,7 +174,25 @@ impl Actor {
             Call::Restore => self.component.set_state(self.state.get()),
             Call::Deserialise { damage } => self.deserialise(*damage),
             Call::FreeState => self.free(),
+            Call::EnterEventMode => self.component.enter_event_mode(),
+            _ if self.component.standard == Standard::Fmi3 => self.send_to_clocks(now, call),
             _ => send(&self.component, now, call),
+        }
+    }
+}
+
+impl Actor {
+    /// Functions that only FMI 3.0 has.
+    fn send_to_clocks(&self, now: f64, call: &Call) -> i32 {
+        let component = &self.component;
+        let first = component.clocks()[0];
+        match call {
+            Call::UpdateDiscreteStates => component.end_event_iteration().status,
+            Call::EnterStepMode => component.enter_step_mode(),
+            Call::SetClock { clock, value } => component.set_clock(first + clock, *value),
+            Call::GetClock { clock } => component.get_clock(first + clock).0,
+            Call::Activate { offset } => component.activate(now + offset),
+            _ => send(component, now, call),
         }
     }
 }
@@ -169,7 +206,17 @@ impl Drop for Actor {
 /// Sends a call that needs no state to an instance that stands at `now`.
 fn send(component: &Component, now: f64, call: &Call) -> i32 {
     match call {
-        Call::Save { .. } | Call::Restore | Call::Deserialise { .. } | Call::FreeState => unreachable!(),
+        // Of these FMI 2.0 has none.
+        Call::UpdateDiscreteStates
+        | Call::EnterStepMode
+        | Call::SetClock { .. }
+        | Call::GetClock { .. }
+        | Call::Activate { .. } => OK,
+        Call::Save { .. }
+        | Call::Restore
+        | Call::Deserialise { .. }
+        | Call::FreeState
+        | Call::EnterEventMode => unreachable!(),
         Call::Enter { start, stop } => component.enter_initialization(*start, *stop),
         Call::Exit => component.exit_initialization(),
         Call::Terminate => component.terminate(),
@@ -234,11 +281,11 @@ fn now(component: &Component) -> f64 {
 }
 
 /// The wild one gets every call, the tidy one only those that the wild one did not refuse.
-fn check(standard: Standard, unit: &str, calls: &[Call], counts: &mut [u32; 2]) -> Result<(), TestCaseError> {
-    let (wild_actor, tidy_actor) = (Actor::new(standard, unit), Actor::new(standard, unit));
+fn check(make: fn() -> Component, calls: &[Call], counts: &mut [u32; 2]) -> Result<(), TestCaseError> {
+    let (wild_actor, tidy_actor) = (Actor::new(make()), Actor::new(make()));
     let (wild, tidy) = (&wild_actor.component, &tidy_actor.component);
     // Steps are cheap only if there are few ticks in them.
-    let sample_time = (unit == CONTROLLER).then(|| wild.reference("sample_time"));
+    let sample_time = wild.description.is_sampled().then(|| wild.reference("sample_time"));
     for call in calls {
         let shortens = match call {
             Call::Set { reference, value } => Some(*reference) == sample_time && *value < 1e-3,
@@ -269,34 +316,45 @@ fn check(standard: Standard, unit: &str, calls: &[Call], counts: &mut [u32; 2]) 
     Ok(())
 }
 
-fn run(standard: Standard, unit: &str) {
+fn run(make: fn() -> Component) {
     let config = Config { cases: 250, failure_persistence: None, ..Config::default() };
     let generator = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
     let mut counts = [0, 0];
     let counts_cell = std::cell::RefCell::new(&mut counts);
     TestRunner::new_with_rng(config, generator)
-        .run(&calls(), |calls| check(standard, unit, &calls, &mut counts_cell.borrow_mut()))
+        .run(&calls(), |calls| check(make, &calls, &mut counts_cell.borrow_mut()))
         .unwrap();
-    println!("{standard:?} {unit}: {} calls done, {} refused", counts[0], counts[1]);
+    println!("{} calls done, {} refused", counts[0], counts[1]);
     assert!(counts.iter().all(|count| *count > 1000), "{counts:?}");
 }
 
 #[test]
 fn fmi2_plant_survives_anything() {
-    run(Standard::Fmi2, PLANT);
+    run(|| Component::new(Standard::Fmi2, PLANT));
 }
 
 #[test]
 fn fmi2_controller_survives_anything() {
-    run(Standard::Fmi2, CONTROLLER);
+    run(|| Component::new(Standard::Fmi2, CONTROLLER));
 }
 
 #[test]
 fn fmi3_plant_survives_anything() {
-    run(Standard::Fmi3, PLANT);
+    run(|| Component::new(Standard::Fmi3, PLANT));
 }
 
 #[test]
 fn fmi3_controller_survives_anything() {
-    run(Standard::Fmi3, CONTROLLER);
+    run(|| Component::new(Standard::Fmi3, CONTROLLER));
+}
+
+#[test]
+fn a_controller_with_events_survives_anything() {
+    const EVENTS: Choices = Choices { event_mode: true, early_return: true, intermediate_update: None };
+    run(|| Component::co_simulation(CONTROLLER, EVENTS));
+}
+
+#[test]
+fn a_scheduled_controller_survives_anything() {
+    run(|| Component::scheduled(CONTROLLER, None));
 }

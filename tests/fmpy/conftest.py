@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from bearing import Loop
 from cosimulation import Fmu
-from packages import FMI_VERSIONS, UNITS, dist, fmu_path
+from packages import BEARING_UNITS, FMI_VERSIONS, UNITS, dist, fmu_path
 
 # Same condition as in requirements.txt.
 if sys.platform != "linux" or platform.machine() != "x86_64" or sys.version_info >= (3, 15):
@@ -56,7 +56,7 @@ def open_loop(open_fmu: Callable[[Path], Fmu]) -> Callable[..., Loop]:
     """Load plant and controller of the bearing for the time of a test and initialize them."""
 
     def open_both(fmi_version: int, plant: dict | None = None, controller: dict | None = None) -> Loop:
-        loop = Loop(*(open_fmu(fmu_path(fmi_version, unit)) for unit in UNITS))
+        loop = Loop(*(open_fmu(fmu_path(fmi_version, unit)) for unit in BEARING_UNITS))
         loop.initialize(plant, controller)
         return loop
 

@@ -179,5 +179,9 @@ def test_value_references_with_start_are_unique(fmi_version: int, unit: str) -> 
 
 @pytest.mark.parametrize("unit", INTERFACE)
 def test_both_versions_describe_the_same_variables(unit: str) -> None:
-    two, three = ([(v.name, v.causality, v.variability) for v in description(n, unit).modelVariables] for n in (2, 3))
+    # FMI 2.0 has no clocks.
+    two, three = (
+        [(v.name, v.causality, v.variability) for v in description(n, unit).modelVariables if v.type != "Clock"]
+        for n in (2, 3)
+    )
     assert two == three

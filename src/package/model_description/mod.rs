@@ -13,17 +13,22 @@ use serde::Serialize;
 pub(super) use terminals_and_icons::terminals_and_icons;
 
 use super::{FmiVersion, GenerationTime, PackageError};
-use crate::unit::Description;
+use crate::unit::{Description, StartValues};
 
 /// The model description of a unit. `time` is left out of the file that is checked in.
 pub fn model_description(
     description: &'static Description,
+    start_values: &StartValues,
     version: FmiVersion,
     time: Option<GenerationTime>,
 ) -> Result<String, PackageError> {
     let text = match version {
-        FmiVersion::Two => document("fmiModelDescription", &fmi2::ModelDescription::new(description, time)),
-        FmiVersion::Three => document("fmiModelDescription", &fmi3::ModelDescription::new(description, time)),
+        FmiVersion::Two => {
+            document("fmiModelDescription", &fmi2::ModelDescription::new(description, start_values, time))
+        }
+        FmiVersion::Three => {
+            document("fmiModelDescription", &fmi3::ModelDescription::new(description, start_values, time))
+        }
     };
     text.map_err(|source| PackageError::ModelDescription { unit: description.name, version, source })
 }

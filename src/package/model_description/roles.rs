@@ -36,8 +36,8 @@ pub fn initial(variable: &Variable) -> Option<&'static str> {
 }
 
 /// The attribute `start`: of what the importer may set, and of nothing else.
-pub fn start(variable: &Variable) -> Option<String> {
-    (!variable.is_calculated()).then(|| literal(variable.kind, variable.start))
+pub fn start(variable: &Variable, value: f64) -> Option<String> {
+    (!variable.is_calculated()).then(|| literal(variable.kind, value))
 }
 
 /// The attributes `min` and `max`.

@@ -15,8 +15,8 @@ use super::documentation::STYLE;
 use super::loop_diagram::loop_diagram;
 use super::model_description::document;
 use super::{FmiVersion, GenerationTime, PackageError};
-use crate::unit::UnitType;
 use crate::unit::system::System;
+use crate::unit::{StartValues, UnitType};
 
 const COMMON: &str = "http://ssp-standard.org/SSP1/SystemStructureCommon";
 const DESCRIPTION: &str = "http://ssp-standard.org/SSP1/SystemStructureDescription";
@@ -53,11 +53,11 @@ impl Component {
 }
 
 /// All files of the package of one system, sorted by path. `units` are the packages of all units by name, made for
-/// [`FMI_VERSION`].
+/// [`FMI_VERSION`], with their start values.
 pub fn contents<'a>(
     system: &'static System,
     time: GenerationTime,
-    units: &'a BTreeMap<&str, Vec<u8>>,
+    units: &'a BTreeMap<&str, (Vec<u8>, &StartValues)>,
 ) -> Result<Vec<Entry<'a>>, PackageError> {
     let in_words = |source| PackageError::SystemStructure { system: system.name, source };
     let structure = description::SystemStructureDescription::new(system, time);
@@ -72,11 +72,11 @@ pub fn contents<'a>(
     ];
     for component in Component::all_of(system) {
         let description = component.unit.description;
-        let unit = units
+        let (unit, start_values) = units
             .get(description.name)
             .ok_or(PackageError::UnknownUnit { system: system.name, unit: description.name })?;
         entries.push(Entry::document(component.unit_path(), Cow::Borrowed(unit)));
-        let parameters = parameters::ParameterSet::new(system, description, time);
+        let parameters = parameters::ParameterSet::new(system, description, start_values, time);
         let text = document("ssv:ParameterSet", &parameters).map_err(in_words)?;
         entries.push(Entry::document(component.parameters_path(), owned(text)));
     }

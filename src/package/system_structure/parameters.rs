@@ -9,9 +9,9 @@ use super::description::Units;
 use super::{COMMON, PARAMETER_VALUES, VERSION};
 use crate::package::model_description::{GENERATION_TOOL, real};
 use crate::package::{GenerationTime, licenses};
-use crate::unit::Description;
 use crate::unit::system::System;
 use crate::unit::variable::{Causality, Kind, Variable};
+use crate::unit::{Description, StartValues};
 
 #[derive(Serialize)]
 pub struct ParameterSet {
@@ -78,8 +78,18 @@ enum Value {
 }
 
 impl ParameterSet {
-    pub fn new(system: &System, description: &'static Description, time: GenerationTime) -> Self {
+    pub fn new(
+        system: &System,
+        description: &'static Description,
+        start_values: &StartValues,
+        time: GenerationTime,
+    ) -> Self {
         let parameters = || description.variables.iter().filter(|row| row.causality == Causality::Parameter);
+        let values =
+            description.variables.iter().enumerate().filter(|(_, row)| row.causality == Causality::Parameter);
+        let values = values
+            .filter_map(|(reference, row)| Parameter::new(row, start_values.of(reference, row)))
+            .collect();
         Self {
             values_namespace: PARAMETER_VALUES,
             common_namespace: COMMON,
@@ -90,15 +100,14 @@ impl ParameterSet {
             license: licenses::NAME,
             generation_tool: GENERATION_TOOL,
             generation_time: time.to_string(),
-            parameters: Parameters { parameters: parameters().filter_map(Parameter::new).collect() },
+            parameters: Parameters { parameters: values },
             units: Units::of(parameters()),
         }
     }
 }
 
 impl Parameter {
-    fn new(variable: &'static Variable) -> Option<Self> {
-        let start = variable.start;
+    fn new(variable: &'static Variable, start: f64) -> Option<Self> {
         let value = match variable.kind {
             Kind::Real(quantity) => Value::Real { value: real(start), unit: quantity.unit.name },
             Kind::Integer => Value::Integer { value: start as i32 },

@@ -91,7 +91,7 @@ variable_table! {
     ESTIMATE_POSITION = Variable::held_output("estimate.position", Kind::Real(&POSITION))
         .initially_from(&[
             "observer.initial.position_from_current", "observer.initial.position", "current", "gap",
-            "inductance_constant", "observer.initial.flux", "observer.initial.flux_offset",
+            "mass", "gravity", "inductance_constant", "observer.initial.flux", "observer.initial.flux_offset",
         ])
         .describe("Estimate of y at the last tick");
     REFERENCE_POSITION = Variable::held_output("reference.position", Kind::Real(&POSITION))
@@ -103,6 +103,9 @@ variable_table! {
     EXCITATION = Variable::held_output("observer.excitation", Kind::Real(&RATIO))
         .describe("Delta of drem at the last tick, scaled by observer.excitation_scale; 0 of the others");
     RESIDUAL = Variable::held_output("observer.residual", Kind::Real(&RATIO))
+        .initially_from(&[
+            "mass", "gravity", "inductance_constant", "observer.initial.flux", "observer.initial.flux_offset",
+        ])
         .describe("What the normalised regression of degree 5 leaves at the estimated offset; 0 for the true one");
     ESTIMATED_RESISTANCE = Variable::held_output("observer.estimated_resistance", Kind::Real(&RESISTANCE_QUANTITY))
         .initially_from(&["resistance"])

@@ -142,10 +142,11 @@ variable_table! {
         .initially_from(&["controller.operating_voltage", "controller.voltage_min", "controller.voltage_max"])
         .describe("u, held between ticks; the operating voltage before the first");
     ESTIMATE_POSITION = Variable::held_output("estimate.position", Kind::Real(&OBSERVED_POSITION))
-        .initially_from(&["sensor_voltage", "observer.initial", "observer.measurement"])
+        .initially_from(&[
+            "sensor_voltage", "observer.initial", "observer.measurement", "sensor_gain", "sensor_offset",
+        ])
         .describe("z1 at the last tick, in V or m as observer.measurement selects");
     ESTIMATE_VELOCITY = Variable::held_output("estimate.velocity", Kind::Real(&OBSERVED_VELOCITY))
-        .initially_from(&["observer.initial"])
         .describe("z2 at the last tick, in V/s or m/s as observer.measurement selects");
     ESTIMATE_EXTENDED = Variable::held_output("estimate.extended", Kind::Real(&OBSERVED_ACCELERATION))
         .initially_from(&["observer.initial", "observer.input_gain", "controller.operating_voltage"])

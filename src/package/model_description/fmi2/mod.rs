@@ -14,16 +14,20 @@ use super::common::{
 };
 use super::roles;
 use crate::package::{Capabilities, FmiVersion, GenerationTime, licenses};
-use crate::unit::Description;
 use crate::unit::variable::{Kind, Variable};
+use crate::unit::{Description, StartValues};
 
 impl ModelDescription {
-    pub fn new(description: &'static Description, time: Option<GenerationTime>) -> Self {
+    pub fn new(
+        description: &'static Description,
+        start_values: &StartValues,
+        time: Option<GenerationTime>,
+    ) -> Self {
         let variables = description.variables.iter().enumerate();
         Self {
             fmi_version: FmiVersion::Two.text(),
             model_name: description.name,
-            guid: description.token().as_str().to_owned(),
+            guid: start_values.token(description),
             description: description.summary,
             version: VERSION,
             copyright: licenses::COPYRIGHT,
@@ -42,7 +46,9 @@ impl ModelDescription {
             default_experiment: DefaultExperiment::new(description),
             model_variables: ModelVariables {
                 variables: variables
-                    .map(|(reference, variable)| ScalarVariable::new(description, reference, variable))
+                    .map(|(reference, variable)| {
+                        ScalarVariable::new(description, reference, variable, start_values)
+                    })
                     .collect(),
             },
             model_structure: ModelStructure::new(description),
@@ -107,9 +113,14 @@ impl TypeDefinitions {
 }
 
 impl ScalarVariable {
-    fn new(description: &Description, value_reference: usize, variable: &Variable) -> Self {
+    fn new(
+        description: &Description,
+        value_reference: usize,
+        variable: &Variable,
+        start_values: &StartValues,
+    ) -> Self {
         let [minimum, maximum] = roles::range(variable);
-        let start = roles::start(variable);
+        let start = roles::start(variable, start_values.of(value_reference, variable));
         let attributes = |declared_type, unit| ValueAttributes {
             declared_type,
             unit,

@@ -14,17 +14,21 @@ use super::common::{
 };
 use super::roles;
 use crate::package::{Capabilities, FmiVersion, GenerationTime, licenses};
-use crate::unit::Description;
 use crate::unit::sampled::ClockVariable;
 use crate::unit::variable::{Kind, Variable};
+use crate::unit::{Description, StartValues};
 
 impl ModelDescription {
-    pub fn new(description: &'static Description, time: Option<GenerationTime>) -> Self {
+    pub fn new(
+        description: &'static Description,
+        start_values: &StartValues,
+        time: Option<GenerationTime>,
+    ) -> Self {
         let variables = description.variables.iter().enumerate();
         Self {
             fmi_version: FmiVersion::Three.text(),
             model_name: description.name,
-            instantiation_token: description.token().as_str().to_owned(),
+            instantiation_token: start_values.token(description),
             description: description.summary,
             version: VERSION,
             copyright: licenses::COPYRIGHT,
@@ -41,7 +45,9 @@ impl ModelDescription {
             default_experiment: DefaultExperiment::new(description),
             model_variables: ModelVariables {
                 variables: variables
-                    .map(|(reference, variable)| TypedVariable::new(description, reference, variable))
+                    .map(|(reference, variable)| {
+                        TypedVariable::new(description, reference, variable, start_values)
+                    })
                     .chain(
                         description.clocks().map(|(reference, clock)| TypedVariable::clock(reference, clock)),
                     )
@@ -144,7 +150,12 @@ impl TypedVariable {
         })
     }
 
-    fn new(description: &Description, value_reference: usize, variable: &Variable) -> Self {
+    fn new(
+        description: &Description,
+        value_reference: usize,
+        variable: &Variable,
+        start_values: &StartValues,
+    ) -> Self {
         let [minimum, maximum] = roles::range(variable);
         let attributes = |declared_type| VariableAttributes {
             name: variable.name,
@@ -157,7 +168,7 @@ impl TypedVariable {
             declared_type,
             minimum,
             maximum,
-            start: roles::start(variable),
+            start: roles::start(variable, start_values.of(value_reference, variable)),
             derivative: roles::derivative_of(description, variable),
             reinit: roles::reinit(variable),
         };

@@ -1,0 +1,242 @@
+//! Parameter files: values for the variables of one unit, with where they come from.
+//!
+//! ```json
+//! {
+//!   "unit": "MaglevRigController",
+//!   "values": { "observer.kind": 1, "observer.bandwidth": 180.0 },
+//!   "units": { "observer.kind": "item linear", "observer.bandwidth": "rad/s" },
+//!   "provenance": { "program": "maglev-fmu 0.1.0" }
+//! }
+//! ```
+//!
+//! `values` is what importers call start values; items of enumerations are written by number, since not every importer
+//! knows their names, and read by number or name. `units` is for people and, where given, must be right. `provenance`
+//! is anything.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+use thiserror::Error;
+
+use super::{PackageError, WrittenFile, replace_file};
+use crate::unit::start_values::StartValueError;
+use crate::unit::variable::{Kind, Variable};
+use crate::unit::{Description, StartValues, UNITS};
+
+/// Contents of a parameter file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ParameterFile {
+    /// Name of the unit.
+    pub unit: String,
+    pub values: Map<String, Value>,
+    #[serde(default)]
+    pub units: Map<String, Value>,
+    #[serde(default)]
+    pub provenance: Value,
+}
+
+/// Why a parameter file was refused.
+#[derive(Debug, Error)]
+pub enum ParameterFileError {
+    #[error("cannot read {}", .path.display())]
+    Read { path: PathBuf, source: std::io::Error },
+    #[error("{} is no parameter file", .path.display())]
+    Syntax { path: PathBuf, source: serde_json::Error },
+    #[error("there is no unit {name}, expected one of {}", unit_names())]
+    UnknownUnit { name: String },
+    #[error("{name} = {value}: expected {expected}")]
+    WrongKind { name: String, value: Value, expected: String },
+    #[error("{name} is given in {given}: expected {expected}")]
+    WrongUnit { name: String, given: Value, expected: String },
+    #[error(transparent)]
+    StartValue(#[from] StartValueError),
+    #[error(transparent)]
+    Write(#[from] PackageError),
+}
+
+fn unit_names() -> String {
+    UNITS.iter().map(|unit| unit.description.name).collect::<Vec<_>>().join(", ")
+}
+
+impl ParameterFile {
+    /// From variables of a unit and their values, of enumerations the name or number of an item.
+    pub fn new<'a>(
+        description: &'static Description,
+        assignments: impl IntoIterator<Item = (&'a str, Value)>,
+        provenance: Value,
+    ) -> Result<Self, ParameterFileError> {
+        let (mut values, mut units) = (Map::new(), Map::new());
+        for (name, value) in assignments {
+            let (variable, value) = checked(description, name, &value)?;
+            values.insert(name.to_owned(), number(variable, value));
+            units.insert(name.to_owned(), unit_text(variable, value).into());
+        }
+        Ok(Self { unit: description.name.to_owned(), values, units, provenance })
+    }
+
+    pub fn read(path: &Path) -> Result<Self, ParameterFileError> {
+        let text =
+            fs::read(path).map_err(|source| ParameterFileError::Read { path: path.to_owned(), source })?;
+        serde_json::from_slice(&text)
+            .map_err(|source| ParameterFileError::Syntax { path: path.to_owned(), source })
+    }
+
+    pub fn write(&self, path: &Path) -> Result<WrittenFile, ParameterFileError> {
+        let text = format!("{self:#}\n");
+        replace_file(path, text.as_bytes())?;
+        Ok(WrittenFile { path: path.to_owned(), size: text.len() })
+    }
+
+    /// The unit's table and the values, checked.
+    pub fn start_values(&self) -> Result<(&'static Description, StartValues), ParameterFileError> {
+        let description = UNITS
+            .iter()
+            .map(|unit| unit.description)
+            .find(|description| description.name == self.unit)
+            .ok_or_else(|| ParameterFileError::UnknownUnit { name: self.unit.clone() })?;
+        let mut start_values = StartValues::default();
+        for (name, value) in &self.values {
+            let (variable, number) = checked(description, name, value)?;
+            start_values.set(description, name, number)?;
+            if let Some(given) = self.units.get(name) {
+                let expected = unit_text(variable, number);
+                if *given != expected.as_str() {
+                    return Err(ParameterFileError::WrongUnit {
+                        name: name.clone(),
+                        given: given.clone(),
+                        expected,
+                    });
+                }
+            }
+        }
+        Ok((description, start_values))
+    }
+}
+
+impl std::fmt::Display for ParameterFile {
+    /// JSON; the alternate form has line breaks.
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let text = if formatter.alternate() {
+            serde_json::to_string_pretty(self)
+        } else {
+            serde_json::to_string(self)
+        };
+        formatter.write_str(&text.map_err(|_| std::fmt::Error)?)
+    }
+}
+
+/// The variable called `name` and the value as a number that it may start with.
+fn checked(
+    description: &'static Description,
+    name: &str,
+    value: &Value,
+) -> Result<(&'static Variable, f64), ParameterFileError> {
+    let unknown = || StartValueError::UnknownVariable { unit: description.name, name: name.to_owned() };
+    let (_, variable) = description.find(name).ok_or_else(unknown)?;
+    let number = read_number(variable, value)?;
+    StartValues::default().set(description, name, number)?;
+    Ok((variable, number))
+}
+
+fn number(variable: &Variable, value: f64) -> Value {
+    match variable.kind {
+        Kind::Real(_) => value.into(),
+        Kind::Boolean => (value != 0.0).into(),
+        // Checked to be whole and in range.
+        Kind::Integer | Kind::Enumeration(_) => (value as i64).into(),
+    }
+}
+
+/// What the unit of a value is called in the file.
+fn unit_text(variable: &Variable, value: f64) -> String {
+    match variable.kind {
+        Kind::Real(quantity) => quantity.unit.name.to_owned(),
+        Kind::Integer => "integer".to_owned(),
+        Kind::Boolean => "boolean".to_owned(),
+        Kind::Enumeration(enumeration) => {
+            let item = enumeration.items.get((value as usize).wrapping_sub(1));
+            format!("item {}", item.map_or("?", |(name, _)| name))
+        }
+    }
+}
+
+fn read_number(variable: &Variable, value: &Value) -> Result<f64, ParameterFileError> {
+    let (number, expected) = match variable.kind {
+        Kind::Boolean => (value.as_bool().map(|flag| f64::from(u8::from(flag))), "true or false".to_owned()),
+        Kind::Enumeration(enumeration) => {
+            let names: Vec<&str> = enumeration.items.iter().map(|(name, _)| *name).collect();
+            let by_name = value
+                .as_str()
+                .and_then(|text| names.iter().position(|name| *name == text))
+                .map(|place| (place + 1) as f64);
+            (by_name.or(value.as_f64()), format!("one of {}", names.join(", ")))
+        }
+        Kind::Integer => (value.as_f64(), "an integer".to_owned()),
+        Kind::Real(quantity) => (value.as_f64(), format!("a number of {}", quantity.unit.name)),
+    };
+    number.ok_or_else(|| ParameterFileError::WrongKind {
+        name: variable.name.to_owned(),
+        value: value.clone(),
+        expected,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::unit::MAGNETIC_BEARING_CONTROLLER as CONTROLLER;
+    use serde_json::json;
+
+    fn file(values: Value, units: Value) -> ParameterFile {
+        let text = json!({ "unit": "MagneticBearingController", "values": values, "units": units });
+        serde_json::from_value(text).unwrap()
+    }
+
+    #[test]
+    fn what_is_written_reads_back() {
+        let assignments = [
+            ("observer.kind", json!("kalman"), 4.0),
+            ("observer.line_search", json!(true), 1.0),
+            ("observer.window", json!(10), 10.0),
+            ("controller.k1", json!(0.1 + 0.2), 0.1 + 0.2),
+        ];
+        let given = assignments.iter().map(|(name, value, _)| (*name, value.clone()));
+        let written = ParameterFile::new(CONTROLLER.description, given, json!({ "seed": 1 })).unwrap();
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("bearing.json");
+        assert_eq!(written.write(&path).unwrap().size, fs::read(&path).unwrap().len());
+        let read = ParameterFile::read(&path).unwrap();
+        assert_eq!(read, written);
+        assert_eq!(read.units["observer.kind"], "item kalman");
+        let (description, values) = read.start_values().unwrap();
+        assert_eq!(read.values["observer.kind"], 4);
+        for (name, _, expected) in assignments {
+            let (reference, variable) = description.find(name).unwrap();
+            assert_eq!(values.of(reference, variable).to_bits(), f64::to_bits(expected), "{name}");
+        }
+    }
+
+    #[test]
+    fn items_may_be_named() {
+        let (_, by_name) = file(json!({ "observer.kind": "kalman" }), json!({})).start_values().unwrap();
+        let (_, by_number) = file(json!({ "observer.kind": 4 }), json!({})).start_values().unwrap();
+        assert_eq!(by_name, by_number);
+    }
+
+    #[test]
+    fn mistakes_are_explained() {
+        let message =
+            |values: Value, units: Value| file(values, units).start_values().unwrap_err().to_string();
+        assert!(message(json!({ "gain": 1 }), json!({})).contains("has no variable gain"));
+        assert!(message(json!({ "sample_time": "1 ms" }), json!({})).contains("a number of s"));
+        assert!(message(json!({ "sample_time": 7.0 }), json!({})).contains("sample_time = 7 s: expected"));
+        assert!(message(json!({ "observer.kind": "luenberger" }), json!({})).contains("one of newton"));
+        let wrong_unit = message(json!({ "sample_time": 0.5 }), json!({ "sample_time": "ms" }));
+        assert_eq!(wrong_unit, "sample_time is given in \"ms\": expected s");
+        let unknown = ParameterFile { unit: "Pendulum".to_owned(), ..file(json!({}), json!({})) };
+        assert!(unknown.start_values().unwrap_err().to_string().contains("MagneticBearingController"));
+    }
+}

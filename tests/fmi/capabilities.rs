@@ -1,0 +1,281 @@
+//! What the model description declares works, and what it does not declare is refused: flag by flag, unit by unit.
+
+use core::cell::Cell;
+use core::ffi::c_void;
+use core::ptr::{null, null_mut};
+use std::ffi::CString;
+
+use maglev_fmu::fmi::fmi2::types::{FMI2_MODEL_EXCHANGE, fmi2CallbackFunctions};
+use maglev_fmu::fmi::fmi2::*;
+use maglev_fmu::fmi::fmi3::types::fmi3Boolean;
+use maglev_fmu::fmi::fmi3::*;
+use maglev_fmu::package::Capabilities;
+use maglev_fmu::unit::UNITS;
+
+use super::harness::clocked::{Choices, co_simulation};
+use super::harness::{Component, OK, Phase, Recorder, Standard, description};
+
+/// Whether something works on a unit.
+type Probe = fn(&str) -> bool;
+
+fn stepped(standard: Standard, unit: &str) -> Component {
+    Component::in_phase(standard, unit, Phase::Step)
+}
+
+/// Whether a call on an instance in step mode works.
+fn works(standard: Standard, unit: &str, call: unsafe fn(*mut c_void) -> i32) -> bool {
+    let component = stepped(standard, unit);
+    // SAFETY: a live handle, valid arguments.
+    let status = unsafe { call(component.handle) };
+    // What is refused says that it is not offered, and why.
+    assert!(status == OK || component.recorder.messages().last().unwrap().text.contains("not offered"));
+    status == OK
+}
+
+fn saves(standard: Standard, unit: &str) -> bool {
+    let component = stepped(standard, unit);
+    let mut state = null_mut();
+    let saved = component.get_state(&mut state) == OK && component.set_state(state) == OK;
+    saved && component.free_state(&mut state) == OK
+}
+
+fn serialises(standard: Standard, unit: &str) -> bool {
+    let component = stepped(standard, unit);
+    component.restore_bytes(&component.saved_bytes()) == OK
+}
+
+/// Steps of different sizes.
+fn varies(standard: Standard, unit: &str) -> bool {
+    let component = stepped(standard, unit);
+    let now = Component::STEPPED_TO;
+    component.step(now, 1e-3) == OK && component.step(now + 1e-3, 0.37e-3) == OK
+}
+
+fn is_made(handle: *mut c_void) -> bool {
+    // SAFETY: null or just made.
+    unsafe { fmi3FreeInstance(handle) };
+    !handle.is_null()
+}
+
+const EVENTS: Choices = Choices { event_mode: true, early_return: true, intermediate_update: None };
+
+thread_local! {
+    static CALLS: Cell<u32> = const { Cell::new(0) };
+}
+
+/// Counts, and asks for the end of the step.
+unsafe extern "C" fn stop(
+    _: *mut c_void,
+    time: f64,
+    _: fmi3Boolean,
+    _: fmi3Boolean,
+    _: fmi3Boolean,
+    _: fmi3Boolean,
+    requested: *mut fmi3Boolean,
+    return_time: *mut f64,
+) {
+    CALLS.set(CALLS.get() + 1);
+    // SAFETY: the results are writable.
+    unsafe {
+        requested.write(1);
+        return_time.write(time);
+    }
+}
+
+/// Calls back within a step, and ends it when asked to.
+fn calls_back(unit: &str) -> [bool; 2] {
+    CALLS.set(0);
+    let choices = Choices { early_return: true, intermediate_update: Some(stop), event_mode: false };
+    let component = Component::co_simulation(unit, choices);
+    component.initialise(0.0);
+    let step = component.step_to_event(0.0, 0.1);
+    assert_eq!(step.status, OK);
+    [CALLS.get() > 0, step.is_early]
+}
+
+fn has_events(unit: &str) -> bool {
+    let recorder = Recorder::default();
+    is_made(co_simulation(unit, EVENTS, recorder.environment()))
+}
+
+fn evaluates_discrete_states(unit: &str) -> bool {
+    if !has_events(unit) {
+        return false;
+    }
+    let component = Component::co_simulation(unit, EVENTS);
+    component.initialise(0.0);
+    // SAFETY: a live handle.
+    unsafe { fmi3EvaluateDiscreteStates(component.handle) == OK }
+}
+
+fn is_schedulable(unit: &str) -> bool {
+    let token = CString::new(description(unit).token().as_str()).unwrap();
+    let (name, token) = (c"x".as_ptr(), token.as_ptr());
+    // SAFETY: C strings, nothing else.
+    is_made(unsafe {
+        fmi3InstantiateScheduledExecution(name, token, null(), 0, 0, null_mut(), None, None, None, None)
+    })
+}
+
+#[test]
+fn flags_of_fmi3_tell_the_truth() {
+    use Standard::Fmi3;
+    type Flag = (&'static str, fn(&Capabilities) -> bool, Probe);
+    let flags: [Flag; 13] = [
+        ("canGetAndSetFMUState", |can| can.can_get_and_set_fmu_state, |unit| saves(Fmi3, unit)),
+        ("canSerializeFMUState", |can| can.can_serialize_fmu_state, |unit| serialises(Fmi3, unit)),
+        (
+            "canHandleVariableCommunicationStepSize",
+            |can| can.can_handle_variable_communication_step_size,
+            |unit| varies(Fmi3, unit),
+        ),
+        (
+            "providesDirectionalDerivatives",
+            |can| can.provides_directional_derivatives,
+            |unit| {
+                works(Fmi3, unit, |c| unsafe {
+                    fmi3GetDirectionalDerivative(c, null(), 0, null(), 0, null(), 0, null_mut(), 0)
+                })
+            },
+        ),
+        (
+            "providesAdjointDerivatives",
+            |can| can.provides_adjoint_derivatives,
+            |unit| {
+                works(Fmi3, unit, |c| unsafe {
+                    fmi3GetAdjointDerivative(c, null(), 0, null(), 0, null(), 0, null_mut(), 0)
+                })
+            },
+        ),
+        (
+            "providesPerElementDependencies",
+            |can| can.provides_per_element_dependencies,
+            |unit| works(Fmi3, unit, |c| unsafe { fmi3GetNumberOfVariableDependencies(c, 2, &mut 0) }),
+        ),
+        (
+            "maxOutputDerivativeOrder",
+            |can| can.max_output_derivative_order > 0,
+            |unit| {
+                works(Fmi3, unit, |c| unsafe {
+                    fmi3GetOutputDerivatives(c, null(), 0, null(), null_mut(), 0)
+                })
+            },
+        ),
+        ("providesIntermediateUpdate", |can| can.provides_intermediate_update, |unit| calls_back(unit)[0]),
+        (
+            "canReturnEarlyAfterIntermediateUpdate",
+            |can| can.can_return_early_after_intermediate_update,
+            |unit| calls_back(unit)[1],
+        ),
+        ("hasEventMode", |can| can.has_event_mode, has_events),
+        (
+            "mightReturnEarlyFromDoStep",
+            |can| can.might_return_early_from_do_step,
+            |unit| {
+                if !has_events(unit) {
+                    return calls_back(unit)[1];
+                }
+                let component = Component::co_simulation(unit, EVENTS);
+                component.initialise(0.0);
+                component.settle_event();
+                component.enter_step_mode();
+                component.step_to_event(0.0, 0.1).is_early
+            },
+        ),
+        (
+            "providesEvaluateDiscreteStates",
+            |can| can.provides_evaluate_discrete_states,
+            evaluates_discrete_states,
+        ),
+        ("ScheduledExecution", |can| can.offers_scheduled_execution, is_schedulable),
+    ];
+    for unit in UNITS {
+        let can = Capabilities::of(unit.description);
+        for (flag, declared, probe) in flags {
+            let name = unit.description.name;
+            assert_eq!(probe(name), declared(&can), "{name}: {flag}");
+        }
+    }
+}
+
+#[test]
+fn flags_of_fmi2_tell_the_truth() {
+    use Standard::Fmi2;
+    type Flag = (&'static str, fn(&Capabilities) -> bool, Probe);
+    let flags: [Flag; 7] = [
+        ("canGetAndSetFMUstate", |can| can.can_get_and_set_fmu_state, |unit| saves(Fmi2, unit)),
+        ("canSerializeFMUstate", |can| can.can_serialize_fmu_state, |unit| serialises(Fmi2, unit)),
+        (
+            "canHandleVariableCommunicationStepSize",
+            |can| can.can_handle_variable_communication_step_size,
+            |unit| varies(Fmi2, unit),
+        ),
+        (
+            "providesDirectionalDerivative",
+            |can| can.provides_directional_derivatives,
+            |unit| {
+                works(Fmi2, unit, |c| unsafe {
+                    fmi2GetDirectionalDerivative(c, null(), 0, null(), 0, null(), null_mut())
+                })
+            },
+        ),
+        (
+            "canInterpolateInputs",
+            |can| can.can_interpolate_inputs,
+            |unit| {
+                works(Fmi2, unit, |c| unsafe { fmi2SetRealInputDerivatives(c, null(), 0, null(), null()) })
+            },
+        ),
+        (
+            "maxOutputDerivativeOrder",
+            |can| can.max_output_derivative_order > 0,
+            |unit| {
+                works(Fmi2, unit, |c| unsafe {
+                    fmi2GetRealOutputDerivatives(c, null(), 0, null(), null_mut())
+                })
+            },
+        ),
+        // A step that went on in the background could be cancelled.
+        (
+            "canRunAsynchronuously",
+            |can| can.can_run_asynchronously,
+            |unit| {
+                let component = stepped(Fmi2, unit);
+                component.step(Component::STEPPED_TO, 1e-3);
+                // SAFETY: a live handle.
+                unsafe { fmi2CancelStep(component.handle) == OK }
+            },
+        ),
+    ];
+    for unit in UNITS {
+        let can = Capabilities::of(unit.description);
+        for (flag, declared, probe) in flags {
+            let name = unit.description.name;
+            assert_eq!(probe(name), declared(&can), "{name}: {flag}");
+        }
+    }
+}
+
+#[test]
+fn model_exchange_is_offered_where_it_is_declared() {
+    for unit in UNITS {
+        let token = CString::new(unit.description.token().as_str()).unwrap();
+        let (name, token) = (c"x".as_ptr(), token.as_ptr());
+        let functions = fmi2CallbackFunctions {
+            logger: None,
+            allocate_memory: None,
+            free_memory: None,
+            step_finished: None,
+            component_environment: null_mut(),
+        };
+        // SAFETY: C strings, no callbacks.
+        unsafe {
+            let three = fmi3InstantiateModelExchange(name, token, null(), 0, 0, null_mut(), None);
+            let two = fmi2Instantiate(name, FMI2_MODEL_EXCHANGE, token, null(), &functions, 0, 0);
+            let offered = unit.description.offers_model_exchange();
+            assert_eq!([!two.is_null(), !three.is_null()], [offered; 2], "{}", unit.description.name);
+            fmi2FreeInstance(two);
+            fmi3FreeInstance(three);
+        }
+    }
+}

@@ -1,0 +1,169 @@
+"""Ticks of a sampled controller: within steps, as events, and scheduled, by fmpy and by fmuloader; the same bits."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from ctypes import c_double, c_int, c_uint32
+from pathlib import Path
+
+import numpy as np
+import pytest
+from bearing import bits
+from fmpy import extract, read_model_description, simulate_fmu
+from fmpy.fmi3 import FMU3ScheduledExecution
+from fmuloader.fmi3 import Fmi3IntervalQualifier, Fmi3Slave
+from packages import CONTROLLER, dist, fmu_path
+
+STOP_TIME = 0.5  # s
+OUTPUTS = ["voltage", "estimate.velocity", "estimate.flux", "tick_time"]
+Trajectory = list[tuple[int, ...]]
+
+
+def position(time: float) -> float:
+    """Input [m] from `time` [s] on, constant over a sample."""
+    return 0.01 + 0.003 * np.sin(300.0 * time)
+
+
+@pytest.fixture
+def controller(tmp_path: Path) -> Iterator[tuple[str, object]]:
+    """Directory and description of the unpacked controller of FMI 3.0."""
+    path = fmu_path(3, CONTROLLER)
+    folder = extract(path, unzipdir=str(tmp_path / "fmu"))
+    yield folder, read_model_description(path)
+    shutil.rmtree(folder)
+
+
+def references(description: object) -> dict[str, int]:
+    return {variable.name: variable.valueReference for variable in description.modelVariables}
+
+
+class Fmpy:
+    """fmpy's class for scheduled execution with the methods that `scheduled` needs."""
+
+    def __init__(self, folder: str, description: object) -> None:
+        identifier = description.scheduledExecution.modelIdentifier
+        self.unit = FMU3ScheduledExecution(
+            guid=description.guid, unzipDirectory=folder, modelIdentifier=identifier, instanceName="scheduled"
+        )
+        self.unit.instantiate()
+        self.put, self.get = self.unit.setFloat64, self.unit.getFloat64
+        self.activate = self.unit.activateModelPartition
+
+    def initialize(self, tick: int) -> float:
+        """Interval of the clock `tick` [s]."""
+        self.unit.enterInitializationMode()
+        interval, qualifier = c_double(), c_int()
+        self.unit.fmi3GetIntervalDecimal(self.unit.component, (c_uint32 * 1)(tick), 1, interval, qualifier)
+        assert qualifier.value == Fmi3IntervalQualifier.INTERVAL_CHANGED
+        self.unit.exitInitializationMode()
+        return interval.value
+
+    def close(self) -> None:
+        self.unit.terminate()
+        self.unit.freeInstance()
+
+
+class Fmuloader:
+    """fmuloader, which passes no callbacks."""
+
+    def __init__(self, _: str, description: object) -> None:
+        self.unit = Fmi3Slave(fmu_path(3, CONTROLLER), model_identifier=CONTROLLER)
+        self.unit.instantiate_scheduled_execution("scheduled", instantiation_token=description.guid)
+        self.put, self.get = self.unit.set_float64, self.unit.get_float64
+        self.activate = self.unit.activate_model_partition
+
+    def initialize(self, tick: int) -> float:
+        self.unit.enter_initialization_mode(start_time=0.0)
+        [interval], _ = self.unit.get_interval_decimal([tick])
+        [counter], [resolution], _ = self.unit.get_interval_fraction([tick])
+        assert counter / resolution == interval
+        assert self.unit.get_shift_decimal([tick]) == [0.0]
+        self.unit.exit_initialization_mode()
+        return interval
+
+    def close(self) -> None:
+        self.unit.terminate()
+        self.unit.free_instance()
+
+
+def scheduled(unit: Fmpy | Fmuloader, by_name: dict[str, int]) -> Trajectory:
+    """Rows after each tick."""
+    interval = unit.initialize(by_name["tick"])
+    rows = []
+    for k in range(round(STOP_TIME / interval)):
+        time = k * interval
+        unit.put([by_name["position"]], [position(time)])
+        unit.activate(by_name["tick"], time)
+        rows.append(bits(unit.get([by_name[name] for name in OUTPUTS])))
+    unit.close()
+    return rows
+
+
+def stepped(fmi_version: int, *, event_mode: bool, step_size: float = 1e-3) -> Trajectory:
+    """Rows at the end of each step of fmpy's own simulation, that is after the tick at its start."""
+    count = round(STOP_TIME / 1e-3)
+    signal = np.array([(k * 1e-3, position(k * 1e-3)) for k in range(count + 1)], [("time", "f8"), ("position", "f8")])
+    result = simulate_fmu(
+        str(fmu_path(fmi_version, CONTROLLER)),
+        stop_time=STOP_TIME,
+        output_interval=step_size,
+        input=hold(signal),
+        output=OUTPUTS,
+        use_event_mode=event_mode,
+        early_return_allowed=event_mode,
+        fmi_type="CoSimulation",
+    )
+    return [bits([row[name] for name in OUTPUTS]) for row in result]
+
+
+def hold(signal: np.ndarray) -> np.ndarray:
+    """The signal as steps: two rows at each jump, the value before and the one after."""
+    rows = [signal[0]]
+    for before, after in zip(signal, signal[1:], strict=False):
+        rows += [(after["time"], before["position"]), tuple(after)]
+    return np.array([tuple(row) for row in rows], signal.dtype)
+
+
+@pytest.mark.parametrize("importer", [Fmpy, Fmuloader])
+def test_schedulers_get_the_ticks_of_steps(importer: type, controller: tuple[str, object]) -> None:
+    folder, description = controller
+    by_name = references(description)
+    rows = scheduled(importer(folder, description), by_name)
+    assert len(set(rows)) == len(rows) == 500
+    unit = Fmi3Slave(fmu_path(3, CONTROLLER), model_identifier=CONTROLLER)
+    unit.instantiate_co_simulation("stepped", instantiation_token=description.guid)
+    unit.enter_initialization_mode(start_time=0.0)
+    unit.exit_initialization_mode()
+    expected = []
+    for k in range(len(rows)):
+        unit.set_float64([by_name["position"]], [position(k * 1e-3)])
+        unit.do_step(k * 1e-3, 1e-3)
+        expected.append(bits(unit.get_float64([by_name[name] for name in OUTPUTS])))
+    unit.terminate()
+    unit.free_instance()
+    assert rows == expected
+
+
+@pytest.mark.parametrize("step_size", [1e-3, 5e-4, 2.5e-4])
+def test_fmpy_gets_the_same_ticks_with_and_without_events(step_size: float) -> None:
+    """With events every tick is sampled, whatever the step; the last row per tick is what holds until the next."""
+    without = stepped(3, event_mode=False, step_size=step_size)
+    assert without == stepped(2, event_mode=False, step_size=step_size)
+    with_events = stepped(3, event_mode=True, step_size=step_size)
+    # Rows of one tick are equal; with events the tick at the end of the simulation is run, too.
+    ticks = list(dict.fromkeys(without))
+    ticks_of_events = list(dict.fromkeys(with_events))
+    assert len(ticks) > 400
+    first = next((k for k, pair in enumerate(zip(ticks[1:], ticks_of_events, strict=False)) if pair[0] != pair[1]), None)
+    assert first is None, f"tick {first}"
+
+
+def test_all_controllers_can_be_scheduled() -> None:
+    for path in sorted(dist().glob("fmi3/*.fmu")):
+        description = read_model_description(path)
+        clocks = {variable.name for variable in description.modelVariables if variable.type == "Clock"}
+        is_controller = path.stem.endswith("Controller")
+        assert (description.scheduledExecution is not None) == is_controller
+        assert clocks == ({"tick", "ticked"} if is_controller else set())
+        assert description.coSimulation.hasEventMode == is_controller
