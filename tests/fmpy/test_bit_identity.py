@@ -8,10 +8,11 @@ import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
+import ball
 import pytest
 from bearing import CONTROLLER_OUTPUTS, STATE, Loop, bits
-from cosimulation import Value
-from packages import FMI_VERSIONS, REPOSITORY
+from cosimulation import Fmu, Value
+from packages import BALL_UNITS, FMI_VERSIONS, REPOSITORY, fmu_path
 
 STEPS = 10_000
 Trajectory = list[tuple[int, ...]]
@@ -41,12 +42,20 @@ def native_trajectory(controller: dict[str, Value], steps: int) -> Trajectory:
     One row per sample, as `Loop.step` returns them: at the tick's time position, velocity, flux, and as of the tick
     voltage, estimate.position, estimate.velocity, estimate.flux.
     """
-    command: list[str | Path] = [executable(), "trace", "bearing", "--steps", str(steps)]
-    for name, value in controller.items():
-        text = str(value).lower() if isinstance(value, bool) else str(value)
-        command += ["--controller", f"{name}={text}"]
-    output = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     columns = [f"plant.{name}" for name in STATE] + [f"controller.{name}" for name in CONTROLLER_OUTPUTS]
+    return trace("bearing", {}, controller, steps, columns)
+
+
+def trace(
+    system: str, plant: dict[str, Value], controller: dict[str, Value], steps: int, columns: list[str]
+) -> Trajectory:
+    """What the command `trace` prints of a system, each number as its 64-bit pattern."""
+    command: list[str | Path] = [executable(), "trace", system, "--steps", str(steps)]
+    for unit, values in [("plant", plant), ("controller", controller)]:
+        for name, value in values.items():
+            text = str(value).lower() if isinstance(value, bool) else str(value)
+            command += [f"--{unit}", f"{name}={text}"]
+    output = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     return [tuple(int(row[column], 16) for column in columns) for row in csv.DictReader(output.splitlines())]
 
 
@@ -69,3 +78,34 @@ def test_both_versions_are_equal(law: str, order: str, open_loop: Callable[..., 
     loops = [open_loop(version, {"bias_flux": 1e-4}, controller) for version in FMI_VERSIONS]
     two, three = ([bits(row) for row in loop.run(STEPS, order)] for loop in loops)
     assert two == three
+
+
+# Every observer of the ball, and what else changes the arithmetic.
+BALL_CONTROLLERS: dict[str, dict[str, Value]] = {
+    "drem": {"observer.startup_hold": 0.01},
+    "drem normalised": {"observer.normalisation": 0.5, "observer.excitation_scale": 1e10},
+    "drem from zero": {"observer.filters_from_zero": True},
+    "newton": {"observer.kind": "polynomial_newton"},
+    "adaptive resistance": {"observer.kind": "polynomial_newton_adaptive", "observer.startup_hold": 0.02},
+    "adaptive offset": {"observer.kind": "polynomial_newton_adaptive", "observer.adaptation": "voltage_offset"},
+    "state feedback": {"controller.feedback": "state", "observer.voltage_source": "applied"},
+}
+
+
+@pytest.mark.parametrize("controller", BALL_CONTROLLERS.values(), ids=BALL_CONTROLLERS.keys())
+def test_ball_through_fmi_equals_native(
+    fmi_version: int, controller: dict[str, Value], open_fmu: Callable[[Path], Fmu]
+) -> None:
+    target = 5e-4
+    plant = {"sensor.noise": 1e-5, "sensor.seed": 3}
+    controller = {"observer.initial.flux": 0.95 * ball.CARRYING_FLUX, **controller}
+    columns = [f"plant.{name}" for name in ball.PLANT_OUTPUTS]
+    columns += [f"controller.{name}" for name in ball.CONTROLLER_OUTPUTS]
+    native = trace("ball", plant, {**controller, "reference": target}, STEPS, columns)
+    loop = ball.BallLoop(*(open_fmu(fmu_path(fmi_version, unit)) for unit in BALL_UNITS), lambda _: target)
+    loop.initialize(plant, {"reference": target, **controller})
+    through_fmi = [bits(loop.step()) for _ in range(STEPS)]
+    assert len(native) == STEPS
+    first = next((k for k in range(STEPS) if through_fmi[k] != native[k]), None)
+    assert first is None, f"row {first}: {through_fmi[first]} through FMI, {native[first]} without"
+    assert len({row[0] for row in native}) > STEPS // 2, "the ball moves"

@@ -8,7 +8,10 @@ import pytest
 from cosimulation import enumeration_items
 from fmpy import read_model_description
 from fmpy.model_description import ModelDescription, ModelVariable
-from packages import CONTROLLER, PLANT, fmu_path
+from packages import BALL_UNITS, CONTROLLER, PLANT, fmu_path
+
+BALL_PLANT, BALL_CONTROLLER = BALL_UNITS
+CARRYING_FLUX = 0.010298006650609622  # Wb
 
 
 class Expected(NamedTuple):
@@ -99,6 +102,77 @@ INTERFACE = {
         "bias_flux": parameter("Wb", 0.0),
         "saturation_flux": parameter("Wb", 0.0022),
     },
+    BALL_PLANT: {
+        "voltage": measured("V"),
+        "force": measured("N"),
+        "current": output("A"),
+        "position": output("m"),
+        "velocity": output("m/s"),
+        "flux": output("Wb"),
+        "voltage_measured": output("V"),
+        "current_measured": output("A"),
+        "contact": output(None, "boolean"),
+        "mass": parameter("kg", 0.0844),
+        "resistance": parameter("Ohm", 2.52),
+        "inductance_constant": parameter("N.m2/A2", 6.4042e-5),
+        "gap": parameter("m", 0.005),
+        "gravity": parameter("m/s2", 9.81),
+        "lower_stop": parameter("m", -0.02),
+        "initial.position": parameter("m", 0.0),
+        "initial.velocity": parameter("m/s", 0.0),
+        "initial.flux": parameter("Wb", CARRYING_FLUX),
+        "sensor.noise": parameter("A", 0.0),
+        "sensor.resolution": parameter("A", 0.0),
+        "sensor.seed": count(1),
+    },
+    BALL_CONTROLLER: {
+        "current": measured("A"),
+        "reference": measured("m"),
+        "voltage_applied": measured("V"),
+        "state.position": measured("m"),
+        "state.velocity": measured("m/s"),
+        "state.flux": measured("Wb"),
+        "voltage": output("V"),
+        "estimate.flux": output("Wb"),
+        "estimate.velocity": output("m/s"),
+        "estimate.position": output("m"),
+        "reference.position": output("m"),
+        "observer.flux_offset": output("Wb"),
+        "observer.excitation": output("1"),
+        "observer.residual": output("1"),
+        "observer.active": output(None, "boolean"),
+        "observer.estimated_resistance": output("Ohm"),
+        "observer.voltage_offset": output("V"),
+        "sample_time": parameter("s", 1e-4),
+        "observer.kind": choice("drem polynomial_newton polynomial_newton_adaptive", "drem"),
+        "observer.adaptation": choice("resistance voltage_offset", "resistance"),
+        "observer.gain": parameter("1/s", 10.0),
+        "observer.excitation_scale": parameter("1", 1e9),
+        "observer.normalisation": parameter("1", 0.0),
+        "observer.prefilter[1]": parameter("1/s", 100.0),
+        "observer.prefilter[2]": parameter("1/s", 300.0),
+        "observer.filter[1]": parameter("1/s", 10.0),
+        "observer.filter[2]": parameter("1/s", 25.0),
+        "observer.filter[3]": parameter("1/s", 60.0),
+        "observer.filter[4]": parameter("1/s", 150.0),
+        "observer.speed_rate": parameter("1/s", 200.0),
+        "observer.position_rate": parameter("1/s", 200.0),
+        "observer.startup_hold": parameter("s", 0.1),
+        "observer.initial.flux": parameter("Wb", CARRYING_FLUX),
+        "observer.initial.flux_offset": parameter("Wb", 0.0),
+        "observer.initial.velocity": parameter("m/s", 0.0),
+        "observer.initial.position": parameter("m", 0.0),
+        "observer.voltage_source": choice("command applied", "command"),
+        "controller.pole": parameter("1/s", 60.0),
+        "controller.reference_filter": parameter("1/s", 80.0),
+        "controller.feedback": choice("estimate state", "estimate"),
+        "controller.voltage_limit": parameter("V", 12.0),
+        "mass": parameter("kg", 0.0844),
+        "resistance": parameter("Ohm", 2.52),
+        "inductance_constant": parameter("N.m2/A2", 6.4042e-5),
+        "gap": parameter("m", 0.005),
+        "gravity": parameter("m/s2", 9.81),
+    },
 }
 CASES = [(unit, name) for unit, variables in INTERFACE.items() for name in variables]
 KINDS = {
@@ -122,6 +196,11 @@ BASE_UNITS = {
     "V/m": (1, 1, -3, -1),
     "V.s/m": (1, 1, -2, -1),
     "1": (0, 0, 0, 0),
+    "kg": (1, 0, 0, 0),
+    "N": (1, 1, -2, 0),
+    "A": (0, 0, 0, 1),
+    "Ohm": (1, 2, -3, -2),
+    "N.m2/A2": (1, 3, -2, -2),
 }
 
 
