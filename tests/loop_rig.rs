@@ -36,11 +36,12 @@ fn natively(plant: &[(&str, f64)], controller: &[(&str, f64)]) -> Columns {
     let mut columns = vec![Vec::new(); RECORD.len()];
     for _ in 0..STEPS {
         rig.step_controller();
+        rig.hand_over();
         for ((unit, name), column) in RECORD.iter().zip(&mut columns) {
             let value = if *unit == "plant" { get(&rig.plant, name) } else { get(&rig.controller, name) };
             column.push(value.to_bits());
         }
-        rig.step_plant();
+        rig.plant_advance();
     }
     columns
 }

@@ -301,11 +301,17 @@ impl BallObserver {
         }
     }
 
-    /// The estimate before any time has passed, given the first `current` \[A\].
+    /// The estimate before any time has passed, given the first `current` \[A\]: what the observer was told, and the
+    /// residual of a ball at rest.
     pub fn start(&mut self, current: f64) -> BallEstimate {
         let current = self.normalised(current);
         self.memory = Memory::start(&self.settings, &self.initial, &self.constants, current);
-        self.estimate(0.0, self.residual())
+        let InitialBallEstimate { flux, flux_offset, velocity, .. } = self.initial;
+        let normalised_flux = self.memory.flux();
+        let square = normalised_flux * normalised_flux;
+        let estimate = self.estimate(0.0, normalised_flux * square * (square - 1.0));
+        let state = State { velocity, flux: flux + flux_offset, ..estimate.state };
+        BallEstimate { state, flux_offset, ..estimate }
     }
 
     /// Takes the sample i\[k\] = `current` \[A\] and the `voltage` \[V\] that acted since the sample before.

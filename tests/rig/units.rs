@@ -66,10 +66,16 @@ impl RigLoop {
         self.controller.advance(self.step_size, &mut Silence).unwrap();
     }
 
-    /// The plant takes the controller's voltage and moves on.
-    pub fn step_plant(&mut self) {
+    /// The plant takes the controller's voltage; what follows from it at once is computed.
+    pub fn hand_over(&mut self) {
         let voltage = get(&self.controller, "voltage");
         set(&mut self.plant, "voltage", voltage);
+        self.plant.continuous().expect("a plant").evaluate();
+    }
+
+    /// The plant takes the controller's voltage and moves on.
+    pub fn step_plant(&mut self) {
+        self.hand_over();
         self.plant_advance();
     }
 

@@ -82,6 +82,9 @@ fn capitalised(text: &str) -> String {
     characters.next().map_or_else(String::new, |first| first.to_uppercase().chain(characters).collect())
 }
 
+/// What one run's draw says of one parameter.
+type Part = fn(&Draw) -> f64;
+
 /// A row per run.
 fn data(contenders: &[Contender], campaign: &Campaign) -> Table {
     let cases: Vec<(usize, usize, u32)> = (0..SPREADS.len())
@@ -98,7 +101,6 @@ fn data(contenders: &[Contender], campaign: &Campaign) -> Table {
     add("spread [1 = A]".to_owned(), &|spread, _, _| (spread + 1) as f64);
     add("reference [1 = sinusoids; 2 = steps]".to_owned(), &|_, reference, _| (reference + 1) as f64);
     add("run [1]".to_owned(), &|_, _, run| f64::from(run));
-    type Part = fn(&Draw) -> f64;
     let parts: [(&str, Part); 5] = [
         ("resistance error [1]", |draw| draw.resistance),
         ("inductance constant error [1]", |draw| draw.inductance_constant),

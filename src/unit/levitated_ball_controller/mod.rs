@@ -134,7 +134,6 @@ impl Unit for LevitatedBallController {
     }
 
     fn initialise(&mut self, start_time: f64) -> Result<(), UnitError> {
-        check_prefilters(&self.values)?;
         let values = &mut self.values;
         self.law = law(values);
         self.clock = SampleClock::new(values[SAMPLE_TIME], start_time);
@@ -151,6 +150,7 @@ impl Unit for LevitatedBallController {
     }
 
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError> {
+        check_prefilters(&self.values)?;
         for k in self.clock.advance_at_most(duration, LARGEST_NUMBER_OF_TICKS)? {
             self.tick_at(self.clock.time_of(k), journal);
         }

@@ -19,6 +19,7 @@ variable_table! {
     VOLTAGE_INPUT = Variable::input("voltage", &VOLTAGE)
         .describe("u, coil voltage, held over a step unless its derivative is set");
     FORCE_INPUT = Variable::input("force", &FORCE)
+        .range(-1e6, 1e6)
         .describe("Disturbing force on the ball, positive upwards, held over a step unless its derivative is set");
     CURRENT_OUTPUT = Variable::output("current", &CURRENT)
         .initially_from(&["initial.position", "initial.flux", "inductance_constant", "gap", "lower_stop"])
@@ -324,7 +325,7 @@ fn check_finite(ball: &LevitatedBall, state: &State) -> Result<(), UnitError> {
         (POSITION_OUTPUT, state.position),
         (VELOCITY_OUTPUT, state.velocity),
         (FLUX_OUTPUT, state.flux),
-        (MAGNETIC_FORCE, ball.magnetic_force(state.flux)),
+        (ACCELERATION_LOCAL, ball.magnetic_force(state.flux) / ball.mass),
     ];
     match components.iter().find(|(_, value)| !value.is_finite()) {
         Some(&(row, value)) => {
