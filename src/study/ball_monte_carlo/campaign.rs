@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use super::contender::Contender;
+use super::contender::{CONTENDERS, Contender};
 use super::spread::SPREADS;
 use super::trial::{self, Outcome};
 use crate::signal::BallReference::{self, Sinusoids, Steps};
@@ -19,25 +19,31 @@ pub struct Campaign {
 }
 
 impl Campaign {
+    /// At most `cap` runs per spread and reference; `contenders(spread, reference)` names who runs.
     pub fn simulate(
         packages: &LoopPackages,
-        contenders: &[Contender],
+        contenders: impl Fn(usize, usize) -> [Contender; CONTENDERS],
+        cap: u32,
         progress: Progress<'_>,
     ) -> Result<Self, StudyError> {
         let mut cases = Vec::new();
+        let mut fields = Vec::new();
         for (spread, widths) in SPREADS.iter().enumerate() {
             for reference in 0..REFERENCES.len() {
-                for who in 0..contenders.len() {
-                    cases.extend((0..widths.runs).map(|run| (spread, reference, who, run)));
+                let field = fields.len();
+                fields.push(contenders(spread, reference));
+                for who in 0..CONTENDERS {
+                    let runs = 0..widths.runs.min(cap);
+                    cases.extend(runs.map(|run| (spread, reference, (field, who), run)));
                 }
             }
         }
         let done = AtomicUsize::new(0);
         let outcomes = cases
             .par_iter()
-            .map(|&(spread, reference, who, run)| {
+            .map(|&(spread, reference, (field, who), run)| {
                 let draw = SPREADS[spread].draw(run);
-                let outcome = trial::run(packages, &contenders[who], REFERENCES[reference], &draw)?;
+                let outcome = trial::run(packages, &fields[field][who], REFERENCES[reference], &draw)?;
                 let count = done.fetch_add(1, Ordering::Relaxed) + 1;
                 if count.is_multiple_of(50) {
                     progress(count as f64 / cases.len() as f64, "ball-monte-carlo: simulating");
@@ -49,12 +55,17 @@ impl Campaign {
         let outcomes = SPREADS
             .iter()
             .map(|spread| {
-                let mut runs = || outcomes.by_ref().take(spread.runs as usize).collect();
-                let mut by_contender = || contenders.iter().map(|_| runs()).collect();
+                let mut runs = || outcomes.by_ref().take(spread.runs.min(cap) as usize).collect();
+                let mut by_contender = || (0..CONTENDERS).map(|_| runs()).collect();
                 REFERENCES.iter().map(|_| by_contender()).collect()
             })
             .collect();
         Ok(Self { outcomes })
+    }
+
+    /// Number of runs of a spread on a reference.
+    pub fn runs(&self, spread: usize) -> u32 {
+        self.of(spread, 0, 0).len() as u32
     }
 
     /// Runs of a contender.

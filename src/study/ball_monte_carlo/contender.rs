@@ -84,9 +84,10 @@ pub const FROZEN: usize = 1;
 pub const NEWTON: usize = 2;
 pub const ADAPTIVE_RESISTANCE: usize = 3;
 pub const ADAPTIVE_OFFSET: usize = 4;
+pub const CONTENDERS: usize = 5;
 
 /// All contenders in the order of the constants above, DREM with its best setting.
-pub fn all(tuned: &DremSetting) -> [Contender; 5] {
+pub fn all(tuned: &DremSetting) -> [Contender; CONTENDERS] {
     let adaptive = Value::Text("polynomial_newton_adaptive");
     [
         Contender::drem("DREM, retuned", tuned),

@@ -60,7 +60,7 @@ pub const SPREADS: [Spread; 4] = [
         voltage_offset: 10e-3,
         noise: 1e-3,
         flux: 0.1,
-        runs: 250,
+        runs: 500,
     },
     Spread { name: "C", noise: 1e-3, flux: 0.15, ..EXACT },
     Spread { name: "D", noise: 1e-5, flux: 0.1, ..EXACT },

@@ -4,25 +4,26 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
+use super::campaign::REFERENCES;
 use super::contender::{Contender, DremSetting};
 use super::spread::Draw;
 use super::trial::{self, Outcome};
-use crate::signal::BallReference::{Sinusoids, Steps};
+use crate::signal::BallReference;
 use crate::study::loop_packages::LoopPackages;
 use crate::study::{Progress, StudyError};
 
 /// Standard deviations of the current sensor \[A\].
 pub const NOISES: [f64; 4] = [0.0, 1e-5, 1e-4, 1e-3];
 /// gamma \[1/s\]
-pub const GAINS: [f64; 5] = [1e-4, 1e-2, 1.0, 10.0, 100.0];
+pub const GAINS: [f64; 5] = [1e-2, 1.0, 10.0, 100.0, 1000.0];
 const PREFILTERS: [[f64; 2]; 3] = [[100.0, 300.0], [50.0, 150.0], [200.0, 600.0]];
 const FILTERS: [[f64; 4]; 2] = [[10.0, 25.0, 60.0, 150.0], [5.0, 15.0, 40.0, 100.0]];
 /// 0 for the paper's gradient.
 pub const NORMALISATIONS: [f64; 2] = [0.0, 1.0];
 /// Initial flux offsets; each comes with its own noise.
-const FLUX_OFFSETS: [f64; 2] = [0.05, -0.05];
+const FLUX_OFFSETS: [f64; 4] = [0.05, -0.05, 0.1, -0.1];
 
-/// A setting at one noise, over both references and all offsets.
+/// A setting on one reference at one noise, over all offsets.
 #[derive(Clone, Copy, Debug)]
 pub struct Score {
     /// Share of runs without contact.
@@ -32,61 +33,77 @@ pub struct Score {
     pub position: f64,
 }
 
-/// All settings at all noises.
+/// All settings on both references at all noises.
 pub struct Tuning {
     pub settings: Vec<DremSetting>,
-    /// `[noise][setting]`
-    pub scores: Vec<Vec<Score>>,
-    /// Newton under the same conditions, by noise.
-    pub newton: Vec<Score>,
+    /// `[reference][noise][setting]`
+    pub scores: Vec<Vec<Vec<Score>>>,
+    /// Newton under the same conditions, `[reference][noise]`.
+    pub newton: Vec<Vec<Score>>,
 }
 
 impl Tuning {
-    pub fn simulate(packages: &LoopPackages, progress: Progress<'_>) -> Result<Self, StudyError> {
-        let settings = settings();
+    /// Tries every `stride`th setting.
+    pub fn simulate(
+        packages: &LoopPackages,
+        stride: usize,
+        progress: Progress<'_>,
+    ) -> Result<Self, StudyError> {
+        let settings: Vec<DremSetting> = settings().into_iter().step_by(stride).collect();
         let mut contenders: Vec<Contender> =
             settings.iter().map(|setting| Contender::drem("", setting)).collect();
         contenders.push(super::newton());
         let done = AtomicUsize::new(0);
-        let cases: Vec<(usize, usize)> =
-            (0..NOISES.len()).flat_map(|noise| (0..contenders.len()).map(move |who| (noise, who))).collect();
+        let cases: Vec<(usize, usize, usize)> = (0..REFERENCES.len())
+            .flat_map(|reference| (0..NOISES.len()).map(move |noise| (reference, noise)))
+            .flat_map(|(reference, noise)| (0..contenders.len()).map(move |who| (reference, noise, who)))
+            .collect();
         let scores = cases
             .par_iter()
-            .map(|&(noise, who)| {
-                let score = score(packages, &contenders[who], NOISES[noise])?;
+            .map(|&(reference, noise, who)| {
+                let score = score(packages, &contenders[who], REFERENCES[reference], NOISES[noise])?;
                 let count = done.fetch_add(1, Ordering::Relaxed) + 1;
                 progress(count as f64 / cases.len() as f64, "ball-monte-carlo: tuning DREM");
                 Ok(score)
             })
             .collect::<Result<Vec<Score>, StudyError>>()?;
-        let mut scores: Vec<Vec<Score>> = scores.chunks(contenders.len()).map(<[Score]>::to_vec).collect();
-        let newton = scores.iter_mut().filter_map(Vec::pop).collect();
+        let rows: Vec<Vec<Score>> = scores.chunks(contenders.len()).map(<[Score]>::to_vec).collect();
+        let mut scores: Vec<Vec<Vec<Score>>> = rows.chunks(NOISES.len()).map(<[_]>::to_vec).collect();
+        let newton =
+            scores.iter_mut().map(|noises| noises.iter_mut().filter_map(Vec::pop).collect()).collect();
         Ok(Self { settings, scores, newton })
     }
 
-    /// The setting with the smallest flux error among those that lose no run, or else among those that lose fewest.
-    pub fn best(&self, noise: usize) -> usize {
-        let row = &self.scores[noise];
-        let most = row.iter().map(|score| score.survival).fold(0.0, f64::max);
-        (0..row.len())
-            .filter(|who| row[*who].survival == most)
-            .min_by(|a, b| row[*a].flux.total_cmp(&row[*b].flux))
-            .unwrap_or_default()
+    /// The setting that loses fewest runs and, among those, has the smallest flux error.
+    pub fn best(&self, reference: usize, noise: usize) -> usize {
+        let row = &self.scores[reference][noise];
+        (0..row.len()).min_by(|a, b| row[*a].rank(&row[*b])).unwrap_or_default()
     }
 
-    /// The best setting with a gain and a normalisation, at one noise.
-    pub fn best_with(&self, noise: usize, gain: f64, normalisation: f64) -> Score {
-        let row = &self.scores[noise];
-        let fits = |who: &usize| {
-            let setting = &self.settings[*who];
-            setting.gain == gain && setting.normalisation == normalisation
-        };
-        let better = |a: &usize, b: &usize| {
-            let (a, b) = (&row[*a], &row[*b]);
-            b.survival.total_cmp(&a.survival).then(a.flux.total_cmp(&b.flux))
-        };
-        let best = (0..row.len()).filter(fits).min_by(better).unwrap_or_default();
-        row[best]
+    /// The best setting for a sensor of `noise` \[A\], one of [`NOISES`].
+    pub fn setting_for(&self, reference: usize, noise: f64) -> DremSetting {
+        let place = NOISES.iter().position(|candidate| *candidate == noise).unwrap_or(NOISES.len() - 1);
+        self.settings[self.best(reference, place)]
+    }
+
+    /// The best score with a gain and a normalisation; `None` if none was tried.
+    pub fn best_with(&self, reference: usize, noise: usize, gain: f64, normalisation: f64) -> Option<Score> {
+        let row = self.scores[reference][noise].iter().zip(&self.settings);
+        row.filter(|(_, setting)| setting.gain == gain && setting.normalisation == normalisation)
+            .map(|(score, _)| *score)
+            .min_by(Score::rank)
+    }
+}
+
+impl Score {
+    /// The better one first.
+    fn rank(&self, other: &Self) -> std::cmp::Ordering {
+        other.survival.total_cmp(&self.survival).then(self.flux.total_cmp(&other.flux))
+    }
+
+    /// Whether no run is lost and the flux error is at most `limit`.
+    pub fn is_within(&self, limit: f64) -> bool {
+        self.survival == 1.0 && self.flux <= limit
     }
 }
 
@@ -104,27 +121,48 @@ fn settings() -> Vec<DremSetting> {
     settings
 }
 
-fn score(packages: &LoopPackages, contender: &Contender, noise: f64) -> Result<Score, StudyError> {
-    let (mut survivors, mut flux_squares, mut position_squares, mut runs) = (0.0, 0.0, 0.0, 0.0);
-    for reference in [Sinusoids, Steps] {
-        for (seed, flux) in FLUX_OFFSETS.into_iter().enumerate() {
-            let draw = Draw {
-                resistance: 0.0,
-                inductance_constant: 0.0,
-                mass: 0.0,
-                voltage_offset: 0.0,
-                noise,
-                flux,
-                seed: seed as i32,
-            };
-            if let Outcome::Survived { position, flux } = trial::run(packages, contender, reference, &draw)? {
-                survivors += 1.0;
-                flux_squares += flux * flux;
-                position_squares += position * position;
-            }
-            runs += 1.0;
+fn score(
+    packages: &LoopPackages,
+    contender: &Contender,
+    reference: BallReference,
+    noise: f64,
+) -> Result<Score, StudyError> {
+    let (mut survivors, mut flux_squares, mut position_squares) = (0.0, 0.0, 0.0);
+    for (seed, flux) in FLUX_OFFSETS.into_iter().enumerate() {
+        let draw = Draw {
+            resistance: 0.0,
+            inductance_constant: 0.0,
+            mass: 0.0,
+            voltage_offset: 0.0,
+            noise,
+            flux,
+            seed: seed as i32,
+        };
+        if let Outcome::Survived { position, flux } = trial::run(packages, contender, reference, &draw)? {
+            survivors += 1.0;
+            flux_squares += flux * flux;
+            position_squares += position * position;
         }
     }
     let mean = |squares: f64| if survivors > 0.0 { f64::sqrt(squares / survivors) } else { f64::INFINITY };
-    Ok(Score { survival: survivors / runs, flux: mean(flux_squares), position: mean(position_squares) })
+    Ok(Score {
+        survival: survivors / FLUX_OFFSETS.len() as f64,
+        flux: mean(flux_squares),
+        position: mean(position_squares),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_best_setting_loses_fewest_then_estimates_best() {
+        let score = |survival, flux| Score { survival, flux, position: 0.0 };
+        let row = vec![score(0.5, 0.001), score(1.0, 0.05), score(1.0, 0.02), score(0.75, 0.0)];
+        let settings = settings().into_iter().take(4).collect();
+        let tuning = Tuning { settings, scores: vec![vec![row]], newton: Vec::new() };
+        assert_eq!(tuning.best(0, 0), 2);
+        assert!(!score(0.75, 0.0).is_within(0.01) && score(1.0, 0.01).is_within(0.01));
+    }
 }
