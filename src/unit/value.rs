@@ -74,7 +74,10 @@ mod tests {
             period.check(f64::NAN).unwrap_err().to_string(),
             "sample_time = NaN s: expected a finite number"
         );
-        assert_eq!(period.check(-1e300).unwrap_err().to_string(), "sample_time = -1e300 s: expected 1e-6 to 1 s");
+        assert_eq!(
+            period.check(-1e300).unwrap_err().to_string(),
+            "sample_time = -1e300 s: expected 1e-6 to 1 s"
+        );
         let colour = Variable::tunable("colour", Kind::Enumeration(&COLOUR), 1.0);
         assert_eq!(colour.check(2.0), Ok(()));
         for wrong in [0.0, 3.0, 1.5] {
