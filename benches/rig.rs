@@ -2,16 +2,13 @@
 //! outputs, on the signals of a PID loop with a millivolt of noise and a moving reference. Beside it the observers
 //! alone, which is what a tuning loop pays per sample.
 
+#[path = "measure/component.rs"]
+mod component;
 mod measure;
 
-use core::ffi::c_void;
 use std::hint::black_box;
 
-use maglev_fmu::fmi::fmi2::{
-    fmi2DoStep, fmi2EnterInitializationMode, fmi2ExitInitializationMode, fmi2FreeInstance, fmi2GetReal,
-    fmi2Reset, fmi2SetReal,
-};
-use maglev_fmu::fmi::{Callback, Instance, Interface, Logger};
+use component::{Component, reference};
 use maglev_fmu::observer::extended_state::{
     ExtendedState, ExtendedStateModel, Injection, LinearInjection, NonlinearInjection, gains_from_bandwidth,
 };
@@ -22,10 +19,6 @@ use measure::{Candidate, medians, verdict};
 const T: f64 = 1e-3;
 const STEPS: usize = 10_000;
 const ROUNDS: usize = 51;
-
-fn reference(unit: &dyn Unit, name: &str) -> u32 {
-    unit.description().find(name).expect("a variable of the table").0 as u32
-}
 
 /// Inputs of the controller, sensor voltage and reference [V], and of the plant, voltage [V] and force [N].
 #[derive(Default)]
@@ -60,80 +53,14 @@ fn record() -> Recording {
     recording
 }
 
-/// A unit behind the C boundary, stepped as an importer would.
-struct Component {
-    handle: *mut c_void,
-    inputs: [u32; 2],
-    outputs: [u32; 4],
+fn controller(parameters: &[(&str, f64)]) -> Component<2> {
+    let outputs = ["voltage", "estimate.position", "estimate.velocity", "estimate.extended"];
+    Component::new(MaglevRigController::new(), ["sensor_voltage", "reference"], outputs, parameters)
 }
 
-impl Component {
-    fn controller(parameters: &[(&str, f64)]) -> Self {
-        let outputs = ["voltage", "estimate.position", "estimate.velocity", "estimate.extended"];
-        Self::new(MaglevRigController::new(), ["sensor_voltage", "reference"], outputs, parameters)
-    }
-
-    fn plant() -> Self {
-        let outputs = ["sensor_voltage_measured", "voltage_measured", "position", "velocity"];
-        Self::new(MaglevRigPlant::new(), ["voltage", "force"], outputs, &[])
-    }
-
-    fn new(
-        mut unit: impl Unit + 'static,
-        inputs: [&str; 2],
-        outputs: [&str; 4],
-        parameters: &[(&str, f64)],
-    ) -> Self {
-        for (name, value) in parameters {
-            let reference = reference(&unit, name) as usize;
-            unit.values_mut()[reference] = *value;
-        }
-        let inputs = inputs.map(|name| reference(&unit, name));
-        let outputs = outputs.map(|name| reference(&unit, name));
-        // Reset goes back to the unit as given here.
-        let instance = Instance::new(
-            Box::new(unit),
-            Interface::CoSimulation,
-            Logger::new(Callback::None, c"bench".into(), false),
-        );
-        let handle = Box::into_raw(Box::new(instance)).cast();
-        Self { handle, inputs, outputs }
-    }
-
-    /// Plays the recorded inputs from a fresh start.
-    fn play(&mut self, inputs: &[[f64; 2]]) {
-        // SAFETY: a live handle, one thread.
-        unsafe {
-            fmi2Reset(self.handle);
-            fmi2EnterInitializationMode(self.handle);
-            fmi2ExitInitializationMode(self.handle);
-        }
-        // Through opaque pointers, as if loaded: nothing is inlined into the loop.
-        let set: unsafe extern "C" fn(_, *const _, _, *const _) -> _ = black_box(fmi2SetReal);
-        let step: unsafe extern "C" fn(_, _, _, _) -> _ = black_box(fmi2DoStep);
-        let get: unsafe extern "C" fn(_, *const _, _, *mut _) -> _ = black_box(fmi2GetReal);
-        let mut outputs = [0.0; 4];
-        let mut failures = 0;
-        let mut time = 0.0;
-        for input in inputs {
-            // SAFETY: a live handle, one thread, arrays of the given length.
-            unsafe {
-                failures += set(self.handle, self.inputs.as_ptr(), 2, input.as_ptr());
-                failures += step(self.handle, time, T, 1);
-                failures += get(self.handle, self.outputs.as_ptr(), 4, outputs.as_mut_ptr());
-            }
-            time += T;
-            black_box(&outputs);
-        }
-        assert_eq!(failures, 0);
-    }
-}
-
-impl Drop for Component {
-    fn drop(&mut self) {
-        // SAFETY: made in `new`, freed once.
-        unsafe { fmi2FreeInstance(self.handle) }
-    }
+fn plant() -> Component<2> {
+    let outputs = ["sensor_voltage_measured", "voltage_measured", "position", "velocity"];
+    Component::new(MaglevRigPlant::new(), ["voltage", "force"], outputs, &[])
 }
 
 /// One Runge-Kutta step per sample with the measurement a straight line, as a tuning loop makes it.
@@ -160,13 +87,13 @@ fn main() {
     let through_extended_state =
         [("controller.kind", 2.0), ("observer.input_gain", -3705.0), ("observer.bandwidth", 300.0)];
     let units = [
-        ("linear, exact, PID", Component::controller(&[]), &readings),
-        ("linear, exact, disturbance rejection", Component::controller(&through_extended_state), &readings),
-        ("linear, Runge-Kutta", Component::controller(&[(discretisation, 2.0)]), &readings),
-        ("nonlinear, Runge-Kutta", Component::controller(&[kind]), &readings),
+        ("linear, exact, PID", controller(&[]), &readings),
+        ("linear, exact, disturbance rejection", controller(&through_extended_state), &readings),
+        ("linear, Runge-Kutta", controller(&[(discretisation, 2.0)]), &readings),
+        ("nonlinear, Runge-Kutta", controller(&[kind]), &readings),
         (
             "nonlinear, Runge-Kutta, exponents 0.9, 0.6, 0.3",
-            Component::controller(&[
+            controller(&[
                 kind,
                 ("observer.exponent[1]", 0.9),
                 ("observer.exponent[2]", 0.6),
@@ -177,15 +104,15 @@ fn main() {
             ]),
             &readings,
         ),
-        ("nonlinear, exact (frozen gains)", Component::controller(&[kind, (discretisation, 1.0)]), &readings),
-        ("plant", Component::plant(), &voltages),
+        ("nonlinear, exact (frozen gains)", controller(&[kind, (discretisation, 1.0)]), &readings),
+        ("plant", plant(), &voltages),
     ];
     let mut candidates: Vec<Candidate> = units
         .into_iter()
         .map(|(name, mut component, inputs)| Candidate {
             name,
             operations: STEPS,
-            run: Box::new(move || component.play(inputs)),
+            run: Box::new(move || component.play(inputs, T)),
         })
         .collect();
     let inputs = &readings;

@@ -7,19 +7,14 @@
 //! The positions are those of a noise-free loop, and for the observers that are made for noise, and once for the
 //! Newton observer, the same with 1e-7 m of noise, which the Newton observers have to iterate for.
 
+#[path = "measure/component.rs"]
+mod component;
 #[path = "../tests/literal/mod.rs"]
 mod literal;
 mod measure;
 
-use core::ffi::c_void;
-use std::hint::black_box;
-
+use component::{Component, reference};
 use maglev_fmu::controller::bearing_feedback::{self, Gains, Law};
-use maglev_fmu::fmi::fmi2::{
-    fmi2DoStep, fmi2EnterInitializationMode, fmi2ExitInitializationMode, fmi2FreeInstance, fmi2GetReal,
-    fmi2Reset, fmi2SetReal,
-};
-use maglev_fmu::fmi::{Callback, Instance, Interface, Logger};
 use maglev_fmu::plant::magnetic_bearing::State;
 use maglev_fmu::signal::GaussianNoise;
 use maglev_fmu::unit::sample_clock::SampleClock;
@@ -34,10 +29,6 @@ const T: f64 = 1e-3;
 const STEPS: usize = 10_000;
 const ROUNDS: usize = 51;
 
-fn reference(unit: &dyn Unit, name: &str) -> u32 {
-    unit.description().find(name).expect("a variable of the table").0 as u32
-}
-
 /// Standard deviation of the noisy positions [m].
 const NOISE: f64 = 1e-7;
 
@@ -45,10 +36,10 @@ const NOISE: f64 = 1e-7;
 #[derive(Default)]
 struct Recording {
     /// [m]
-    positions: Vec<f64>,
-    noisy_positions: Vec<f64>,
+    positions: Vec<[f64; 1]>,
+    noisy_positions: Vec<[f64; 1]>,
     /// [V]
-    voltages: Vec<f64>,
+    voltages: Vec<[f64; 1]>,
 }
 
 fn record() -> Recording {
@@ -68,9 +59,9 @@ fn record() -> Recording {
         let voltage = controller.values()[controller_voltage];
         plant.values_mut()[plant_voltage] = voltage;
         plant.advance(T, &mut Silence).expect("a step");
-        recording.positions.push(position);
-        recording.noisy_positions.push(position + NOISE * noise.sample());
-        recording.voltages.push(voltage);
+        recording.positions.push([position]);
+        recording.noisy_positions.push([position + NOISE * noise.sample()]);
+        recording.voltages.push([voltage]);
     }
     recording
 }
@@ -149,101 +140,40 @@ impl Unit for Baseline {
     }
 }
 
-/// A unit behind the C boundary, stepped as an importer would.
-struct Component {
-    handle: *mut c_void,
-    input: u32,
-    outputs: [u32; 4],
+/// A controller, or what passes for one, with some values.
+fn controller(unit: impl Unit + 'static, values: &[(&str, f64)]) -> Component<1> {
+    let outputs = ["voltage", "estimate.position", "estimate.velocity", "estimate.flux"];
+    Component::new(unit, ["position"], outputs, values)
 }
 
-impl Component {
-    /// A controller, or what passes for one, with some values of integers and enumerations.
-    fn controller(unit: impl Unit + 'static, integers: &[(&str, i32)]) -> Self {
-        let outputs = ["voltage", "estimate.position", "estimate.velocity", "estimate.flux"];
-        Self::new(unit, "position", outputs, integers)
-    }
-
-    fn plant() -> Self {
-        let outputs = ["position_measured", "voltage_measured", "velocity", "flux"];
-        Self::new(MagneticBearingPlant::new(), "voltage", outputs, &[])
-    }
-
-    fn new(mut unit: impl Unit + 'static, input: &str, outputs: [&str; 4], integers: &[(&str, i32)]) -> Self {
-        for (name, value) in integers {
-            let reference = reference(&unit, name) as usize;
-            unit.values_mut()[reference] = f64::from(*value);
-        }
-        let (input, outputs) = (reference(&unit, input), outputs.map(|name| reference(&unit, name)));
-        // Reset goes back to the unit as given here.
-        let instance = Instance::new(
-            Box::new(unit),
-            Interface::CoSimulation,
-            Logger::new(Callback::None, c"bench".into(), false),
-        );
-        let handle = Box::into_raw(Box::new(instance)).cast();
-        Self { handle, input, outputs }
-    }
-
-    /// Plays the recorded input from a fresh start.
-    fn play(&mut self, inputs: &[f64]) {
-        // SAFETY: a live handle, one thread.
-        unsafe {
-            fmi2Reset(self.handle);
-            fmi2EnterInitializationMode(self.handle);
-            fmi2ExitInitializationMode(self.handle);
-        }
-        // Through opaque pointers, as if loaded: nothing is inlined into the loop.
-        let set: unsafe extern "C" fn(_, *const _, _, *const _) -> _ = black_box(fmi2SetReal);
-        let step: unsafe extern "C" fn(_, _, _, _) -> _ = black_box(fmi2DoStep);
-        let get: unsafe extern "C" fn(_, *const _, _, *mut _) -> _ = black_box(fmi2GetReal);
-        let mut outputs = [0.0; 4];
-        let mut failures = 0;
-        let mut time = 0.0;
-        for input in inputs {
-            // SAFETY: a live handle, one thread, arrays of the given length.
-            unsafe {
-                failures += set(self.handle, &self.input, 1, input);
-                failures += step(self.handle, time, T, 1);
-                failures += get(self.handle, self.outputs.as_ptr(), 4, outputs.as_mut_ptr());
-            }
-            time += T;
-            black_box(&outputs);
-        }
-        assert_eq!(failures, 0);
-    }
-}
-
-impl Drop for Component {
-    fn drop(&mut self) {
-        // SAFETY: made in `new`, freed once.
-        unsafe { fmi2FreeInstance(self.handle) }
-    }
+fn plant() -> Component<1> {
+    let outputs = ["position_measured", "voltage_measured", "velocity", "flux"];
+    Component::new(MagneticBearingPlant::new(), ["voltage"], outputs, &[])
 }
 
 fn main() {
     let Recording { positions, noisy_positions, voltages } = record();
-    let controller =
-        |integers: &[(&str, i32)]| Component::controller(MagneticBearingController::new(), integers);
-    let literal = |iterations| Component::controller(Baseline::new(iterations), &[]);
-    let (exact, kind) = (("observer.map", 1), "observer.kind");
+    let shipped = |values: &[(&str, f64)]| controller(MagneticBearingController::new(), values);
+    let literal = |iterations| controller(Baseline::new(iterations), &[]);
+    let (exact, kind) = (("observer.map", 1.0), "observer.kind");
     let candidates = [
         ("empty unit", literal(0), &positions),
-        ("newton, d = 10", controller(&[]), &positions),
-        ("newton, d = 100", controller(&[("observer.max_iterations", 100)]), &positions),
+        ("newton, d = 10", shipped(&[]), &positions),
+        ("newton, d = 100", shipped(&[("observer.max_iterations", 100.0)]), &positions),
         ("literal algorithm, d = 10", literal(10), &positions),
         ("literal algorithm, d = 100", literal(100), &positions),
-        ("newton, exact map", controller(&[exact]), &positions),
-        ("newton, exact map, noise", controller(&[exact]), &noisy_positions),
-        ("reduced_newton", controller(&[(kind, 2)]), &positions),
-        ("reduced_newton_compensated", controller(&[(kind, 3)]), &positions),
-        ("kalman", controller(&[(kind, 4)]), &noisy_positions),
-        ("newton, exact map, N = 30, noise", controller(&[exact, ("observer.window", 30)]), &noisy_positions),
-        ("plant", Component::plant(), &voltages),
+        ("newton, exact map", shipped(&[exact]), &positions),
+        ("newton, exact map, noise", shipped(&[exact]), &noisy_positions),
+        ("reduced_newton", shipped(&[(kind, 2.0)]), &positions),
+        ("reduced_newton_compensated", shipped(&[(kind, 3.0)]), &positions),
+        ("kalman", shipped(&[(kind, 4.0)]), &noisy_positions),
+        ("newton, exact map, N = 30, noise", shipped(&[exact, ("observer.window", 30.0)]), &noisy_positions),
+        ("plant", plant(), &voltages),
     ];
     let mut candidates = candidates.map(|(name, mut component, inputs)| Candidate {
         name,
         operations: STEPS,
-        run: Box::new(move || component.play(inputs)),
+        run: Box::new(move || component.play(inputs, T)),
     });
     let medians = medians(&mut candidates, ROUNDS);
     println!("Step through the C ABI (set one input, doStep, get four outputs), medians");

@@ -14,97 +14,21 @@
 //! (17) and (20) are reconstructions, as the regression is. Between samples the voltage is constant and the current nearly an
 //! exponential; [`Course`] follows it more closely than a straight line would.
 
-use super::flux_mixing::{FluxMixing, MixingSettings, normalised};
+pub use super::ball_observer_settings::{
+    Adaptation, BallEstimate, BallObserverSettings, FluxEstimator, InitialBallEstimate,
+};
+use super::current_course::{Course, SMALLEST_FLUX};
+use super::flux_mixing::{FluxMixing, normalised};
 use super::flux_regression::{FluxRegression, FluxRegressionSettings, Sample, residual_and_slope};
 use super::polynomial_newton::limited_error;
-use crate::plant::levitated_ball::{LevitatedBall, State};
+use crate::plant::levitated_ball::State;
 use crate::signal::FirstOrderHold;
 use serde::{Deserialize, Serialize};
-
-/// What an integral term of the flux estimator blames for a wandering offset.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Adaptation {
-    /// The resistance is not what it is believed to be.
-    Resistance,
-    /// A constant voltage adds to the measured one.
-    VoltageOffset,
-}
-
-/// How the flux offset is estimated.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub enum FluxEstimator {
-    /// Proposition 6
-    Mixing(MixingSettings),
-    /// The same with a normalised gain, see [`normalised`]; not in the paper.
-    NormalisedMixing { mixing: MixingSettings, level: f64 },
-    /// Beyond the paper, see [`super::polynomial_newton`].
-    Newton {
-        /// G \[1/s\]
-        gain: f64,
-        /// What to learn with the gain G_I \[1/s2\].
-        adaptation: Option<(Adaptation, f64)>,
-    },
-}
-
-/// What the observer knows of its plant and how fast it is.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct BallObserverSettings {
-    pub ball: LevitatedBall,
-    /// T \[s\]
-    pub sample_time: f64,
-    /// Rates of the prefilters \[1/s\], different from each other.
-    pub prefilters: [f64; 2],
-    /// Rates of the four filters of the mixing \[1/s\].
-    pub filters: [f64; 4],
-    pub estimator: FluxEstimator,
-    /// w_p \[1/s\]
-    pub speed_rate: f64,
-    /// w_y \[1/s\]
-    pub position_rate: f64,
-    /// Samples the offset is frozen for until the prefilters have settled.
-    pub held_samples: u32,
-}
-
-/// Where the observer starts.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct InitialBallEstimate {
-    /// chi(0) \[Wb\]
-    pub flux: f64,
-    /// theta^(0) \[Wb\]
-    pub flux_offset: f64,
-    /// \[m/s\]
-    pub velocity: f64,
-    /// \[m\]; without it, from the first current and the flux.
-    pub position: Option<f64>,
-    /// Whether all filters start from zero instead of from a ball at rest. It makes the start wrong: for studies.
-    pub filters_from_zero: bool,
-}
-
-/// Result of one sample.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct BallEstimate {
-    pub state: State,
-    /// theta^ \[Wb\]
-    pub flux_offset: f64,
-    /// Delta, scaled; 0 unless the estimator is DREM.
-    pub excitation: f64,
-    /// f(theta^), normalised: 0 for the true offset.
-    pub residual: f64,
-    /// Resistance \[Ohm\] and offset of the voltage \[V\], as believed or as learnt.
-    pub resistance: f64,
-    pub voltage_offset: f64,
-    /// Whether the start-up hold is over.
-    pub active: bool,
-    /// Whether the observer had to start again because its numbers had run away.
-    pub restarted: bool,
-}
 
 /// Largest normalised current that is believed: some hundred times what carries the ball.
 const LARGEST_CURRENT: f64 = 1e3;
 /// Largest share of the resistance, or of the voltage that carries the ball at y = 0, that is learnt.
 const LARGEST_ADAPTATION: f64 = 0.25;
-/// Smallest normalised flux to divide by.
-const SMALLEST_FLUX: f64 = 0.2;
 /// Longest sub-step of the prefilters \[s\].
 const LONGEST_SUBSTEP: f64 = 1e-4;
 const MAX_SUBSTEPS: u32 = 16;
@@ -223,60 +147,6 @@ impl Memory {
     /// v^
     fn velocity(&self, speed_rate: f64) -> f64 {
         self.integrated_velocity - speed_rate * self.regression.sample().current * self.flux()
-    }
-}
-
-/// How current and integrated voltage went between two samples, with the voltage constant.
-///
-/// The current is a parabola through both samples; its curvature is the change of I' = -v l + z S over the sample, in which
-/// z = I / l^ and v^ are the observer's and v^ is taken to change as over the sample before. What they are wrong by enters
-/// with the square of the sample time, and not at all at rest.
-struct Course {
-    past: Sample,
-    rise: f64,
-    /// Height of the parabola above the straight line is `bulge` x (1 - x).
-    bulge: f64,
-    /// U, damping and T
-    source: f64,
-    damping: f64,
-    duration: f64,
-}
-
-impl Course {
-    #[inline]
-    fn new(
-        past: Sample,
-        current: f64,
-        (source, damping): (f64, f64),
-        [offset, velocity, velocity_after]: [f64; 3],
-        duration: f64,
-    ) -> Self {
-        let (induced_before, induced_after) = (source - damping * past.current, source - damping * current);
-        let flux_before = past.flux + offset;
-        let flux_after = flux_before + 0.5 * duration * (induced_before + induced_after);
-        let slope = |flux: f64, velocity: f64, current: f64, induced: f64| {
-            current / flux.max(SMALLEST_FLUX) * induced - velocity * flux
-        };
-        let before = slope(flux_before, velocity, past.current, induced_before);
-        let after = slope(flux_after, velocity_after, current, induced_after);
-        Self {
-            past,
-            rise: current - past.current,
-            bulge: 0.5 * duration * (before - after),
-            source,
-            damping,
-            duration,
-        }
-    }
-
-    /// At the share `x` of the sample.
-    #[inline]
-    fn at(&self, x: f64) -> Sample {
-        let mean_current = self.past.current + x * (0.5 * self.rise + self.bulge * (0.5 - x * (1.0 / 3.0)));
-        Sample {
-            flux: self.past.flux + x * self.duration * (self.source - self.damping * mean_current),
-            current: self.past.current + x * (self.rise + self.bulge * (1.0 - x)),
-        }
     }
 }
 

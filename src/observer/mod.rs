@@ -1,7 +1,9 @@
 //! State estimators, one per file, and what they share.
 
 pub mod ball_observer;
+mod ball_observer_settings;
 mod bearing_observer;
+mod current_course;
 pub mod extended_state;
 pub mod extended_state_exact;
 pub mod factored_covariance;
