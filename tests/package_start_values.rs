@@ -77,7 +77,7 @@ fn a_forged_start_value_is_refused() {
         let token = CONTROLLER.description.token();
         let (reference, _) = CONTROLLER.description.find("sample_time").unwrap();
         for (tail, reason) in [
-            (format!(";{reference}=-1.0"), "expected 0.000001 to 1 s"),
+            (format!(";{reference}=-1.0"), "expected 1e-6 to 1 s"),
             (format!(";{reference}"), "expected ;value reference=value"),
         ] {
             let forged = format!("{}{tail}", token.as_str());

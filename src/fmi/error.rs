@@ -1,5 +1,6 @@
 //! Why a call was refused. The instance is as it was before the call.
 
+use super::log::CategoryName;
 use super::{StateError, Status};
 use crate::unit::UnitError;
 use crate::unit::value::ValueError;
@@ -56,8 +57,8 @@ pub enum CallError {
     WrongOrder { name: &'static str, order: i32 },
     #[error("continuous state {0}")]
     StateRejected(ValueError),
-    #[error("category number {0} is not declared in the model description: expected one of {categories}", categories = super::log::CategoryList)]
-    UnknownCategory(usize),
+    #[error("the category {0} is not declared in the model description: expected one of {categories}", categories = super::log::CategoryList)]
+    UnknownCategory(CategoryName),
     #[error("not offered by this unit: {0}")]
     NotOffered(&'static str),
     #[error("this function tells nothing about the fmi2StatusKind {0}")]

@@ -21,6 +21,39 @@ const FATAL: usize = 1;
 const EVENTS: usize = 2;
 const OBSERVER: usize = 3;
 
+/// Beginning of a name that no category has, for an error message.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CategoryName {
+    /// `None` of a null pointer.
+    length: Option<usize>,
+    text: [u8; 40],
+}
+
+impl CategoryName {
+    fn new(name: Option<&CStr>) -> Self {
+        let mut text = [0; 40];
+        let length = name.map(|name| {
+            let bytes = name.to_bytes();
+            let length = bytes.len().min(text.len());
+            text[..length].copy_from_slice(&bytes[..length]);
+            length
+        });
+        Self { length, text }
+    }
+}
+
+impl fmt::Display for CategoryName {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Some(length) = self.length else {
+            return formatter.write_str("of a null pointer");
+        };
+        let chunks = self.text[..length].utf8_chunks();
+        formatter.write_str("\"")?;
+        chunks.map(|chunk| chunk.valid()).try_for_each(|valid| formatter.write_str(valid))?;
+        formatter.write_str("\"")
+    }
+}
+
 /// Names of all categories for an error message.
 pub(super) struct CategoryList;
 
@@ -181,8 +214,9 @@ pub(super) unsafe fn set_debug_logging(
 ) -> Result<(), CallError> {
     // SAFETY: the caller's promise.
     let number = |name: &*const c_char| unsafe { c_string(*name) }.and_then(Logger::category);
-    if let Some(unknown) = names.iter().position(|name| number(name).is_none()) {
-        return Err(CallError::UnknownCategory(unknown));
+    if let Some(unknown) = names.iter().find(|name| number(name).is_none()) {
+        // SAFETY: the caller's promise.
+        return Err(CallError::UnknownCategory(CategoryName::new(unsafe { c_string(*unknown) })));
     }
     if names.is_empty() {
         logger.enabled = [on; LOG_CATEGORIES.len()];

@@ -196,7 +196,7 @@ mod tests {
         let message = |name: &str, value: f64| values(&[(name, value)]).unwrap_err().to_string();
         assert_eq!(message("k1", 1.0), "MagneticBearingController has no variable k1");
         assert!(message("voltage", 1.0).contains("calculated"));
-        assert!(message("sample_time", 5.0).contains("expected 0.000001 to 1 s"));
+        assert!(message("sample_time", 5.0).contains("expected 1e-6 to 1 s"));
         assert!(message("observer.max_iterations", 1.5).contains("an integer"));
         assert!(message("observer.line_search", 2.0).contains("true or false"));
         assert!(message("observer.kind", 9.0).contains("an item of BearingObserver"));

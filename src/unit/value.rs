@@ -1,19 +1,35 @@
 //! Checks that a value may be given to a variable.
 
+use core::fmt;
+
 use super::variable::{Kind, Variable};
 use thiserror::Error;
 
 /// Why a value was refused; names the variable, the value, its unit and what was expected.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum ValueError {
-    #[error("{name} = {value} {unit}: expected a finite number")]
+    #[error("{name} = {value} {unit}: expected a finite number", value = Readable(*value))]
     NotFinite { name: &'static str, value: f64, unit: &'static str },
     #[error("derivative of {name} = {value} {unit}/s: expected a finite number")]
     SlopeNotFinite { name: &'static str, value: f64, unit: &'static str },
-    #[error("{name} = {value} {unit}: expected {minimum} to {maximum} {unit}")]
+    #[error(
+        "{name} = {value} {unit}: expected {minimum} to {maximum} {unit}",
+        value = Readable(*value), minimum = Readable(*minimum), maximum = Readable(*maximum)
+    )]
     OutOfRange { name: &'static str, value: f64, unit: &'static str, minimum: f64, maximum: f64 },
-    #[error("{name} = {value}: expected an item of {enumeration}, 1 to {count}")]
+    #[error("{name} = {value}: expected an item of {enumeration}, 1 to {count}", value = Readable(*value))]
     NoItem { name: &'static str, value: f64, enumeration: &'static str, count: usize },
+}
+
+/// A number for people: with an exponent where it would have many zeros otherwise.
+struct Readable(f64);
+
+impl fmt::Display for Readable {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(value) = *self;
+        let is_handy = value == 0.0 || !value.is_finite() || (1e-4..1e7).contains(&value.abs());
+        if is_handy { write!(formatter, "{value}") } else { write!(formatter, "{value:e}") }
+    }
 }
 
 impl Variable {
@@ -53,10 +69,14 @@ mod tests {
     fn messages_name_value_unit_and_expectation() {
         let period = Variable::parameter("sample_time", Kind::Real(&DURATION), 1e-3).range(1e-6, 1.0);
         assert_eq!(period.check(1e-6), Ok(()));
-        assert_eq!(period.check(0.0).unwrap_err().to_string(), "sample_time = 0 s: expected 0.000001 to 1 s");
+        assert_eq!(period.check(0.0).unwrap_err().to_string(), "sample_time = 0 s: expected 1e-6 to 1 s");
         assert_eq!(
             period.check(f64::NAN).unwrap_err().to_string(),
             "sample_time = NaN s: expected a finite number"
+        );
+        assert_eq!(
+            period.check(-1e300).unwrap_err().to_string(),
+            "sample_time = -1e300 s: expected 1e-6 to 1 s"
         );
         let colour = Variable::tunable("colour", Kind::Enumeration(&COLOUR), 1.0);
         assert_eq!(colour.check(2.0), Ok(()));

@@ -78,10 +78,10 @@ fn unknown_categories_change_nothing_and_are_answered_with_the_list() {
     for (standard, unit) in all() {
         let component = Component::with_logging(standard, unit, false);
         let status = set_logging(&component, true, &[c"logEvents", c"logEverything"]);
-        component.assert_refused(status, &["SetDebugLogging", "category number 1"]);
+        component.assert_refused(status, &["SetDebugLogging", "\"logEverything\""]);
         let status = set_logging(&component, true, &[c""]);
         let list = CATEGORIES.map(|name| name.to_str().unwrap()).join(", ");
-        component.assert_refused(status, &["category number 0", &list]);
+        component.assert_refused(status, &["the category \"\"", &list]);
         component.initialise(0.0);
         assert!(component.recorder.take().is_empty(), "logEvents is still off");
         // SAFETY: null with a count is what is tested; a null name, too.
@@ -100,7 +100,7 @@ fn unknown_categories_change_nothing_and_are_answered_with_the_list() {
         assert_eq!(status, [ERROR; 2]);
         let texts: Vec<_> = component.recorder.take().into_iter().map(|message| message.text).collect();
         assert!(texts[0].contains("the argument categories is a null pointer"), "{texts:?}");
-        assert!(texts[1].contains("category number 0"), "{texts:?}");
+        assert!(texts[1].contains("the category of a null pointer"), "{texts:?}");
     }
 }
 

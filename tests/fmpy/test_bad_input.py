@@ -63,7 +63,7 @@ OUT_OF_RANGE = [
     setting(CONTROLLER, "observer.max_iterations", 0, ["= 0", "expected 1 to 1000"]),
     setting(CONTROLLER, "observer.max_iterations", 1001, ["= 1001", "expected 1 to 1000"]),
     setting(CONTROLLER, "controller.voltage_limit", -1.0, ["-1 V", "expected 0 to 1000000 V"]),
-    setting(PLANT, "sensor.noise", -1e-6, ["-0.000001 m", "expected 0 to 1 m"]),
+    setting(PLANT, "sensor.noise", -1e-6, ["-1e-6 m", "expected 0 to 1 m"]),
     setting(CONTROLLER, "controller.law", 0, ["= 0", "item of BearingLaw, 1 to"]),
     setting(CONTROLLER, "controller.law", 99, ["= 99", "item of BearingLaw, 1 to"]),
     setting(CONTROLLER, "controller.feedback", -1, ["= -1", "item of Feedback, 1 to 2"]),
@@ -159,10 +159,10 @@ def test_no_step_after_termination_but_after_reset(
 @pytest.mark.parametrize(
     ("name", "value", "message"),
     [
-        ("sample_time", 0.0, ["0 s", "expected 0.000001 to 1 s"]),
+        ("sample_time", 0.0, ["0 s", "expected 1e-6 to 1 s"]),
         ("sample_time", NAN, ["NaN s", "finite"]),
         ("controller.initial_voltage", INFINITY, ["inf V", "finite"]),
-        ("saturation_flux", 0.0, ["0 Wb", "expected 0.000001 to 1 Wb"]),
+        ("saturation_flux", 0.0, ["0 Wb", "expected 1e-6 to 1 Wb"]),
         ("observer.kind", 99, ["= 99", "item of BearingObserver"]),
     ],
 )
