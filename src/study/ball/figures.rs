@@ -233,7 +233,7 @@ fn figure_7(runs: &Runs) -> FigureWithData {
         )
         .logarithmic(),
         position_panel(
-            "estimates fed back, filters from zero",
+            "estimates fed back, gamma = 1 1/s (dashed: y*)",
             &[("gamma = 1 1/s".to_owned(), &runs.poorly_excited_loop[0])],
         ),
     ];
