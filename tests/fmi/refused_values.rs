@@ -44,6 +44,12 @@ fn non_finite_reals_are_refused_everywhere() {
     assert!(tried > 250);
 }
 
+/// A number as messages show it: nobody reads three hundred digits.
+fn shown(value: f64) -> String {
+    let has_few_zeros = value == 0.0 || (1e-4..1e7).contains(&value.abs());
+    if has_few_zeros { value.to_string() } else { format!("{value:e}") }
+}
+
 #[test]
 fn values_out_of_range_are_refused_with_the_range() {
     let mut tried = 0;
@@ -59,13 +65,13 @@ fn values_out_of_range_are_refused_with_the_range() {
                 let (wrong, expectation) = match variable.kind {
                     Kind::Real(_) if minimum.is_finite() => (
                         vec![minimum.next_down(), maximum.next_up(), f64::MAX, f64::MIN],
-                        format!("expected {minimum} to {maximum} {}", variable.unit()),
+                        format!("expected {} to {} {}", shown(minimum), shown(maximum), variable.unit()),
                     ),
                     Kind::Integer => {
                         let all = vec![minimum - 1.0, maximum + 1.0, f64::from(i32::MIN)];
                         // Nothing above fits the type.
                         let fitting = all.into_iter().filter(|value| *value <= f64::from(i32::MAX));
-                        (fitting.collect(), format!("expected {minimum} to {maximum} "))
+                        (fitting.collect(), format!("expected {} to {} ", shown(minimum), shown(maximum)))
                     }
                     Kind::Enumeration(enumeration) => {
                         let count = enumeration.items.len();
@@ -77,7 +83,7 @@ fn values_out_of_range_are_refused_with_the_range() {
                 for value in wrong {
                     tried += 1;
                     let status = component.set_reference(reference, value);
-                    let said = format!("{} = {value}", variable.name);
+                    let said = format!("{} = {}", variable.name, shown(value));
                     component.assert_refused(status, &[&said, &expectation]);
                 }
             }
