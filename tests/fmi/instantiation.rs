@@ -130,12 +130,12 @@ fn every_form_of_resource_path_is_accepted() {
         let recorder = Box::<Recorder>::default();
         for resources in [
             c"",
-            c"file:///tmp/fmu/resources",
-            c"file:////tmp/fmu/resources",
-            c"file:/tmp/fmu/resources",
-            c"file://localhost/tmp/fmu%20x/resources",
-            c"/tmp/fmu/resources/",
-            c"/tmp/fmu/resources",
+            c"file:///srv/fmu/resources",
+            c"file:////srv/fmu/resources",
+            c"file:/srv/fmu/resources",
+            c"file://localhost/srv/fmu%20x/resources",
+            c"/srv/fmu/resources/",
+            c"/srv/fmu/resources",
             c"//tmp//fmu//resources//",
             c"C:\\fmu\\resources\\",
             c"no such place",
