@@ -16,12 +16,14 @@ mod life_cycle;
 mod logging;
 mod model_exchange;
 mod panic;
+mod random;
 mod random_calls;
 mod random_exchange;
 mod refused_references;
 mod refused_values;
 mod saved_state;
 mod scheduled_execution;
+mod standard;
 mod steps;
 #[cfg(feature = "tools")]
 mod symbols;

@@ -1,0 +1,150 @@
+//! The host around a call: memory that runs out, floating-point exceptions that are trapped, another rounding.
+
+use core::cell::Cell;
+use std::alloc::{GlobalAlloc, Layout, System};
+
+thread_local! {
+    /// Allocations of this thread until one fails; none fails while there is no number.
+    static ALLOCATIONS: Cell<Option<u32>> = const { Cell::new(None) };
+    /// Whether an allocation has failed.
+    static HAS_FAILED: Cell<bool> = const { Cell::new(false) };
+    /// The control word that the host has around the present call.
+    static CONTROL: Cell<Option<u32>> = const { Cell::new(None) };
+}
+
+/// The system's allocator, out of memory where a test wants it to be.
+struct Limited;
+
+fn fails() -> bool {
+    ALLOCATIONS
+        .try_with(|left| match left.get() {
+            None => false,
+            Some(0) => {
+                HAS_FAILED.set(true);
+                true
+            }
+            Some(number) => {
+                left.set(Some(number - 1));
+                false
+            }
+        })
+        .unwrap_or(false)
+}
+
+// SAFETY: everything is handed on to the system's allocator, or null is returned, as an allocator may; counting does not
+// allocate.
+unsafe impl GlobalAlloc for Limited {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        if fails() {
+            return core::ptr::null_mut();
+        }
+        // SAFETY: the caller's promise.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: the caller's promise.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        if fails() {
+            return core::ptr::null_mut();
+        }
+        // SAFETY: the caller's promise.
+        unsafe { System.alloc_zeroed(layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        if fails() {
+            return core::ptr::null_mut();
+        }
+        // SAFETY: the caller's promise.
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Limited = Limited;
+
+/// What is unusual about the host during a call.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Host {
+    /// Allocations that succeed before all others fail.
+    pub allocations: Option<u32>,
+    /// Control word of the floating-point unit (MXCSR on x86-64), where it is not the default.
+    pub control: Option<u32>,
+}
+
+impl Host {
+    /// Makes a call in this environment; whether memory was short.
+    pub fn around<T>(self, call: impl FnOnce() -> T) -> (T, bool) {
+        let outer = (ALLOCATIONS.get(), CONTROL.get());
+        HAS_FAILED.set(false);
+        CONTROL.set(self.control);
+        let usual = control_word();
+        if let Some(control) = self.control {
+            set_control_word(control);
+        }
+        ALLOCATIONS.set(self.allocations);
+        let result = call();
+        ALLOCATIONS.set(outer.0);
+        let is_restored = self.control.is_none_or(|control| is_same(control, control_word()));
+        set_control_word(usual);
+        CONTROL.set(outer.1);
+        assert!(is_restored, "the call has left another floating-point environment than it found");
+        (result, HAS_FAILED.get())
+    }
+}
+
+/// What an importer does in a callback: memory suffices, and nothing is trapped.
+pub fn at_home<T>(act: impl FnOnce() -> T) -> T {
+    let (allocations, control) = (ALLOCATIONS.take(), control_word());
+    set_control_word(DEFAULT_CONTROL);
+    let result = act();
+    set_control_word(control);
+    ALLOCATIONS.set(allocations);
+    result
+}
+
+/// Whether a callback finds the floating-point environment of the call that it is made from.
+pub fn is_that_of_the_host() -> bool {
+    is_same(CONTROL.get().unwrap_or(DEFAULT_CONTROL), control_word())
+}
+
+/// Exception flags aside, which calculations set.
+fn is_same(one: u32, other: u32) -> bool {
+    one & !0x3f == other & !0x3f
+}
+
+/// Everything masked, to nearest.
+pub const DEFAULT_CONTROL: u32 = 0x1f80;
+
+/// Control words of unusual hosts: division by zero, overflow and invalid operations trapped as Delphi and gfortran
+/// with -ffpe-trap do; rounding down, up, to zero; denormals flushed to zero.
+pub const CONTROLS: [u32; 5] =
+    [0x1f80 & !(0x80 | 0x200 | 0x400), 0x1f80 | 0x2000, 0x1f80 | 0x4000, 0x1f80 | 0x6000, 0x1f80 | 0x8040];
+
+#[cfg(target_arch = "x86_64")]
+fn control_word() -> u32 {
+    let mut word = 0_u32;
+    // SAFETY: stores the control word in a variable of four bytes.
+    unsafe { core::arch::asm!("stmxcsr [{}]", in(reg) &raw mut word, options(nostack, preserves_flags)) };
+    word
+}
+
+#[cfg(target_arch = "x86_64")]
+fn set_control_word(word: u32) {
+    // Without the flags, since a flag that is set would trap at once.
+    let word = word & !0x3f;
+    // SAFETY: no reserved bits are set; the code around computes nothing between this and the call it is made for.
+    unsafe { core::arch::asm!("ldmxcsr [{}]", in(reg) &raw const word, options(nostack, preserves_flags)) };
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+fn control_word() -> u32 {
+    DEFAULT_CONTROL
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+fn set_control_word(_: u32) {}
