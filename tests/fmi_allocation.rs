@@ -206,8 +206,8 @@ fn ticks_at_events_and_on_activation_use_no_heap() {
                 time = step.reached;
                 assert_eq!(component.enter_event_mode(), OK);
                 assert_eq!(component.set_clock(component.clocks()[0], 1), OK);
-                component.settle_event();
                 assert_eq!(component.get_clock(component.clocks()[1]).0, OK);
+                component.settle_event();
                 assert_eq!(component.enter_step_mode(), OK);
             }
         });

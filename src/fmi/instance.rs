@@ -5,6 +5,7 @@ use core::fmt;
 
 use super::fmi3::types::{fmi3ClockUpdateCallback, fmi3InstanceEnvironment};
 use super::intermediate_update::{IntermediateUpdate, StepInProgress};
+use super::model_exchange::EarliestTime;
 use super::saved_state::Life;
 use super::ticking::ClockStates;
 use super::{CallError, Callback, CommunicationPoint, Function, Interface, Logger, Phase};
@@ -24,6 +25,8 @@ pub struct Instance {
     pub(super) phase: Phase,
     pub(super) logger: Logger,
     pub(super) communication: CommunicationPoint,
+    /// How far an importer that integrates the unit may go back.
+    pub(super) earliest_time: EarliestTime,
     pub(super) start_time: f64,
     /// Whether a value was set since the calculated ones were last computed, before the first step.
     pub(super) is_stale: bool,
@@ -49,7 +52,8 @@ impl Instance {
             interface,
             phase: Phase::Instantiated,
             logger,
-            communication: CommunicationPoint::new(0.0),
+            communication: CommunicationPoint::new(0.0, None),
+            earliest_time: EarliestTime::at_event(0.0),
             start_time: 0.0,
             is_stale: true,
             needs_evaluation: false,
@@ -69,7 +73,7 @@ impl Instance {
         }
     }
 
-    /// Start and stop time of the experiment \[s\]; the stop time only has to make sense, steps may go beyond.
+    /// Start and stop time of the experiment \[s\]; nothing is computed past the stop time, if there is one.
     pub(super) fn set_experiment(
         &mut self,
         start_time: f64,
@@ -86,7 +90,8 @@ impl Instance {
             return Err(CallError::WrongTime { argument: "stopTime", value: stop_time, expected });
         }
         self.start_time = start_time;
-        self.communication = CommunicationPoint::new(start_time);
+        self.communication = CommunicationPoint::new(start_time, stop_time);
+        self.earliest_time = EarliestTime::at_event(start_time);
         self.is_stale = true;
         Ok(())
     }
@@ -132,7 +137,7 @@ impl Instance {
         let duration = self.communication.duration(point, step_size)?;
         self.unit.advance(duration, &mut self.logger)?;
         self.needs_evaluation = false;
-        self.communication.advance(point, step_size);
+        self.communication.move_to(point + step_size);
         self.unit.values_mut()[TIME] = self.communication.now();
         Ok(())
     }
@@ -148,7 +153,8 @@ impl Instance {
         self.unit = self.template.boxed_clone();
         self.phase = Phase::Instantiated;
         self.start_time = 0.0;
-        self.communication = CommunicationPoint::new(0.0);
+        self.communication = CommunicationPoint::new(0.0, None);
+        self.earliest_time = EarliestTime::at_event(0.0);
         self.is_stale = true;
         self.clocks = ClockStates::default();
         self.needs_evaluation = false;
@@ -163,15 +169,19 @@ impl Instance {
 
     /// What a saved state has to tell besides the unit.
     pub(super) fn life(&self) -> Life {
-        let Self { phase, communication, start_time, is_stale, needs_evaluation, clocks, .. } = *self;
-        Life { phase, communication, start_time, is_stale, needs_evaluation, clocks }
+        let Self {
+            phase, communication, earliest_time, start_time, is_stale, needs_evaluation, clocks, ..
+        } = *self;
+        Life { phase, communication, earliest_time, start_time, is_stale, needs_evaluation, clocks }
     }
 
     /// Goes on from a saved state; the unit has been restored.
     pub(super) fn resume(&mut self, life: Life) {
-        let Life { phase, communication, start_time, is_stale, needs_evaluation, clocks } = life;
+        let Life { phase, communication, earliest_time, start_time, is_stale, needs_evaluation, clocks } =
+            life;
         self.phase = phase;
         self.communication = communication;
+        self.earliest_time = earliest_time;
         self.start_time = start_time;
         self.is_stale = is_stale;
         self.needs_evaluation = needs_evaluation;

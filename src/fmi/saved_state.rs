@@ -15,6 +15,7 @@
 //! 58  n   payload
 //! ```
 
+use super::model_exchange::EarliestTime;
 use super::ticking::ClockStates;
 use super::{CommunicationPoint, Instance, Phase};
 use crate::unit::persistence::PersistenceError;
@@ -25,7 +26,7 @@ use thiserror::Error;
 
 const MARK: [u8; 8] = *b"maglevFS";
 /// To be raised whenever a unit's fields or [`Life`] change.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 const TOKEN: core::ops::Range<usize> = 16..54;
 const CHECKSUM: core::ops::Range<usize> = 54..58;
@@ -58,7 +59,9 @@ pub enum StateError {
     Life,
     #[error("a state in the phase \"{got}\", which this instance never reaches")]
     OtherPhase { got: &'static str },
-    #[error("a state at t = {now} s with start time {start_time} s: expected finite times")]
+    #[error(
+        "a state at t = {now} s with start time {start_time} s: expected finite times, none past the stop time"
+    )]
     Times { now: f64, start_time: f64 },
     #[error("a state before the first step in the phase \"{0}\"")]
     Stale(&'static str),
@@ -86,6 +89,7 @@ impl fmt::Display for TokenName {
 pub(super) struct Life {
     pub phase: Phase,
     pub communication: CommunicationPoint,
+    pub earliest_time: EarliestTime,
     pub start_time: f64,
     /// See [`Instance`].
     pub is_stale: bool,
@@ -102,7 +106,7 @@ impl Life {
         if !reaches(phase) {
             return Err(StateError::OtherPhase { got: phase.name() });
         }
-        if !(now.is_finite() && start_time.is_finite()) {
+        if !(self.communication.is_possible_after(start_time) && self.earliest_time.is_finite()) {
             return Err(StateError::Times { now, start_time });
         }
         if self.is_stale && !matches!(phase, Phase::Instantiated | Phase::InitializationMode) {

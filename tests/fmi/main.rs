@@ -23,6 +23,7 @@ mod refused_values;
 mod saved_state;
 mod scheduled_execution;
 mod steps;
+mod stop_time;
 #[cfg(feature = "tools")]
 mod symbols;
 mod tick_modes;

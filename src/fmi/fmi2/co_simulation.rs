@@ -80,7 +80,12 @@ pub unsafe extern "C" fn fmi2GetIntegerStatus(
     _value: *mut fmi2Integer,
 ) -> fmi2Status {
     // SAFETY: the caller's promise.
-    unsafe { enter(component, &may::GET_INTEGER_STATUS, |_| Err(CallError::NoSuchStatus(kind))) }
+    unsafe {
+        enter(component, &may::GET_INTEGER_STATUS, |instance| {
+            instance.require_co_simulation()?;
+            Err(CallError::NoSuchStatus(kind))
+        })
+    }
 }
 
 /// Whether the unit wants to end the simulation: never.
@@ -126,6 +131,7 @@ unsafe fn status<T>(
     // SAFETY: the caller's promise.
     unsafe {
         enter(component, function, |instance| {
+            instance.require_co_simulation()?;
             if kind != known {
                 return Err(CallError::NoSuchStatus(kind));
             }

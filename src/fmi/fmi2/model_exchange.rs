@@ -66,7 +66,7 @@ pub unsafe extern "C" fn fmi2CompletedIntegratorStep(
     // SAFETY: the caller's promise.
     unsafe {
         enter(component, &may::COMPLETED_INTEGRATOR_STEP, |instance| {
-            instance.require_model_exchange()?;
+            instance.complete_integrator_step()?;
             report(enter_event_mode, FMI2_FALSE);
             report(terminate_simulation, FMI2_FALSE);
             Ok(())

@@ -42,6 +42,16 @@ pub unsafe extern "C" fn fmi3UpdateDiscreteStates(
     }
 }
 
+/// Ignored, since providesEvaluateDiscreteStates is false (FMI 3.0.2, section 2.3.5).
+///
+/// # Safety
+/// A live handle, used by one thread at a time.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3EvaluateDiscreteStates(instance: fmi3Instance) -> fmi3Status {
+    // SAFETY: the caller's promise.
+    unsafe { enter(instance, &may::EVALUATE_DISCRETE_STATES, |_| Ok(())) }
+}
+
 /// # Safety
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]

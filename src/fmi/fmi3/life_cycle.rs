@@ -8,7 +8,7 @@ use super::types::*;
 use crate::fmi::Interface;
 use crate::fmi::boundary::{create, enter, free, input};
 use crate::fmi::instance::instantiate;
-use crate::fmi::intermediate_update::IntermediateUpdate;
+use crate::fmi::intermediate_update::{IntermediateUpdate, RegisteredVariables};
 use crate::fmi::log::{Callback, c_string, set_debug_logging};
 
 /// "3.0".
@@ -44,7 +44,8 @@ pub unsafe extern "C" fn fmi3SetDebugLogging(
 /// events are wanted of a unit that has none.
 ///
 /// # Safety
-/// Strings are null or end with NUL; the callbacks stay callable while the instance lives.
+/// Strings are null or end with NUL; `required_intermediate_variables` is null or holds as many references as said; the
+/// callbacks stay callable while the instance lives.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
     instance_name: fmi3String,
@@ -54,7 +55,7 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
     logging_on: fmi3Boolean,
     event_mode_used: fmi3Boolean,
     early_return_allowed: fmi3Boolean,
-    _required_intermediate_variables: *const fmi3ValueReference,
+    required_intermediate_variables: *const fmi3ValueReference,
     required_intermediate_variable_count: usize,
     environment: fmi3InstanceEnvironment,
     log_message: Option<fmi3LogMessageCallback>,
@@ -71,12 +72,24 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
     };
     create(|| {
         let mut instance = instantiate(function, name, token, log, logging_on != FMI3_FALSE, Ok(interface))?;
+        // SAFETY: the importer's list holds as many references as it says.
+        let registered = unsafe {
+            input(
+                required_intermediate_variables,
+                required_intermediate_variable_count,
+                "requiredIntermediateVariables",
+            )
+        };
+        let registered = registered
+            .and_then(|references| RegisteredVariables::new(references, instance.variables.len()))
+            .inspect_err(|error| instance.logger.error(format_args!("{function}: {error}")))
+            .ok()?;
         // An importer without intermediate variables does not intend to use intermediate update (section 2.3.1), but
         // has it early return to ask for.
         let is_of_use = required_intermediate_variable_count > 0 || may_return_early;
         instance.intermediate_update = intermediate_update
             .filter(|_| is_of_use)
-            .map(|callback| IntermediateUpdate { callback, environment, may_return_early });
+            .map(|callback| IntermediateUpdate { callback, environment, may_return_early, registered });
         Some(instance)
     })
 }

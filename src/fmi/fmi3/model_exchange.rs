@@ -29,7 +29,7 @@ pub unsafe extern "C" fn fmi3CompletedIntegratorStep(
     // SAFETY: the caller's promise.
     unsafe {
         enter(instance, &may::COMPLETED_INTEGRATOR_STEP, |instance| {
-            instance.require_model_exchange()?;
+            instance.complete_integrator_step()?;
             report(enter_event_mode, FMI3_FALSE);
             report(terminate_simulation, FMI3_FALSE);
             Ok(())

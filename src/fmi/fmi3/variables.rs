@@ -4,6 +4,7 @@
 use super::legality as may;
 use super::types::*;
 use crate::fmi::CallError;
+use crate::fmi::FmiVersion;
 use crate::fmi::access::DataType;
 use crate::fmi::boundary::{enter, input, output};
 use crate::unit::variable::Kind;
@@ -35,7 +36,7 @@ macro_rules! accessors {
                     let references = input(references, count, "valueReferences")?;
                     let values = output(values, count, "values")?;
                     instance.get(
-                        &DataType { name: $name, carries: $carries, has_clocks: true },
+                        &DataType { name: $name, carries: $carries, standard: FmiVersion::Three },
                         references,
                         values,
                         $from,
@@ -61,7 +62,7 @@ macro_rules! accessors {
                     let references = input(references, count, "valueReferences")?;
                     let values = input(values, count, "values")?;
                     instance.set(
-                        &DataType { name: $name, carries: $carries, has_clocks: true },
+                        &DataType { name: $name, carries: $carries, standard: FmiVersion::Three },
                         references,
                         values,
                         $into,
@@ -98,7 +99,7 @@ absent!("a UInt32", fmi3GetUInt32 GET_UINT32, fmi3SetUInt32 SET_UINT32, u32, 0);
 absent!("a UInt64", fmi3GetUInt64 GET_UINT64, fmi3SetUInt64 SET_UINT64, u64, 0);
 absent!("a String", fmi3GetString GET_STRING, fmi3SetString SET_STRING, fmi3String, core::ptr::null());
 
-const BINARY: DataType = DataType { name: "a Binary", carries: |_| false, has_clocks: true };
+const BINARY: DataType = DataType { name: "a Binary", carries: |_| false, standard: FmiVersion::Three };
 
 /// # Safety
 /// A live handle, used by one thread at a time; the arrays hold as many elements as the counts say.

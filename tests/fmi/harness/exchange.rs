@@ -120,6 +120,33 @@ impl Component {
         }
     }
 
+    /// No unit has step events, nor ends a simulation.
+    pub fn complete_integrator_step(&self) -> i32 {
+        // SAFETY: a live handle, room for the results.
+        let (status, results) = unsafe {
+            match self.standard {
+                Standard::Fmi2 => {
+                    let mut results = [7; 2];
+                    let [event, end] = &mut results;
+                    (
+                        fmi2CompletedIntegratorStep(self.handle, 1, event, end),
+                        results.map(|result| result != 0),
+                    )
+                }
+                Standard::Fmi3 => {
+                    let mut results = [7; 2];
+                    let [event, end] = &mut results;
+                    (
+                        fmi3CompletedIntegratorStep(self.handle, 1, event, end),
+                        results.map(|result| result != 0),
+                    )
+                }
+            }
+        };
+        assert!(status != OK || results == [false; 2]);
+        status
+    }
+
     pub fn set_time(&self, time: f64) -> i32 {
         // SAFETY: a live handle.
         unsafe {
