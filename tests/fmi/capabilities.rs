@@ -64,7 +64,7 @@ thread_local! {
 }
 
 /// Counts, and asks for the end of the step.
-unsafe extern "C" fn stop(
+unsafe extern "C-unwind" fn stop(
     _: *mut c_void,
     time: f64,
     _: fmi3Boolean,

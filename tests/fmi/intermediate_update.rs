@@ -25,7 +25,7 @@ thread_local! {
     static SCRIPT: RefCell<Script> = RefCell::default();
 }
 
-unsafe extern "C" fn callback(
+unsafe extern "C-unwind" fn callback(
     _: *mut c_void,
     time: f64,
     set_requested: fmi3Boolean,

@@ -10,6 +10,9 @@ mod concurrency;
 mod dependencies;
 mod derivatives;
 mod event_mode;
+mod failing_memory;
+#[cfg(target_arch = "x86_64")]
+mod floating_point;
 mod instantiation;
 mod intermediate_update;
 mod life_cycle;
@@ -26,6 +29,8 @@ mod steps;
 mod stop_time;
 #[cfg(feature = "tools")]
 mod symbols;
+#[cfg(feature = "tools")]
+mod throwing;
 mod tick_modes;
 mod ticks;
 mod values;

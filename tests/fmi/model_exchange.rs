@@ -177,7 +177,7 @@ const RULES: &[Rule] = &[
     ("Reset", "xxxxx", |c| c.reset()),
 ];
 
-unsafe extern "C" fn enter3(handle: *mut core::ffi::c_void) -> i32 {
+unsafe extern "C-unwind" fn enter3(handle: *mut core::ffi::c_void) -> i32 {
     // SAFETY: the caller's promise.
     unsafe { maglev_fmu::fmi::fmi3::fmi3EnterInitializationMode(handle, 0, 0.0, 0.0, 0, 0.0) }
 }

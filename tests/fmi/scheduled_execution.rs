@@ -178,7 +178,7 @@ thread_local! {
     static TOLD: Cell<(u32, u32, i32)> = const { Cell::new((0, 0, 0)) };
 }
 
-unsafe extern "C" fn clock_update(_: *mut c_void) {
+unsafe extern "C-unwind" fn clock_update(_: *mut c_void) {
     let (handle, ticked) = SUBJECT.get();
     let (calls, active, refused) = TOLD.get();
     let (mut first, mut second) = (7, 7);

@@ -25,7 +25,7 @@ macro_rules! accessors {
         /// # Safety
         /// A live handle, used by one thread at a time; both arrays hold `count` elements.
         #[unsafe(no_mangle)]
-        pub unsafe extern "C" fn $get(
+        pub unsafe extern "C-unwind" fn $get(
             component: fmi2Component,
             references: *const fmi2ValueReference,
             count: usize,
@@ -43,7 +43,7 @@ macro_rules! accessors {
         /// # Safety
         /// A live handle, used by one thread at a time; both arrays hold `count` elements.
         #[unsafe(no_mangle)]
-        pub unsafe extern "C" fn $set(
+        pub unsafe extern "C-unwind" fn $set(
             component: fmi2Component,
             references: *const fmi2ValueReference,
             count: usize,

@@ -10,7 +10,7 @@ use crate::fmi::{CallError, Instance};
 /// # Safety
 /// A live handle, used by one thread at a time; both arrays hold `count` elements.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetClock(
+pub unsafe extern "C-unwind" fn fmi3GetClock(
     instance: fmi3Instance,
     references: *const fmi3ValueReference,
     count: usize,
@@ -28,7 +28,7 @@ pub unsafe extern "C" fn fmi3GetClock(
 /// # Safety
 /// A live handle, used by one thread at a time; both arrays hold `count` elements.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SetClock(
+pub unsafe extern "C-unwind" fn fmi3SetClock(
     instance: fmi3Instance,
     references: *const fmi3ValueReference,
     count: usize,
@@ -48,7 +48,7 @@ pub unsafe extern "C" fn fmi3SetClock(
 /// # Safety
 /// A live handle, used by one thread at a time; all arrays hold `count` elements.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetIntervalDecimal(
+pub unsafe extern "C-unwind" fn fmi3GetIntervalDecimal(
     instance: fmi3Instance,
     references: *const fmi3ValueReference,
     count: usize,
@@ -76,7 +76,7 @@ pub unsafe extern "C" fn fmi3GetIntervalDecimal(
 /// # Safety
 /// A live handle, used by one thread at a time; all arrays hold `count` elements.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetIntervalFraction(
+pub unsafe extern "C-unwind" fn fmi3GetIntervalFraction(
     instance: fmi3Instance,
     references: *const fmi3ValueReference,
     count: usize,
@@ -109,7 +109,7 @@ pub unsafe extern "C" fn fmi3GetIntervalFraction(
 /// # Safety
 /// A live handle, used by one thread at a time; both arrays hold `count` elements.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetShiftDecimal(
+pub unsafe extern "C-unwind" fn fmi3GetShiftDecimal(
     instance: fmi3Instance,
     references: *const fmi3ValueReference,
     count: usize,
@@ -134,7 +134,7 @@ pub unsafe extern "C" fn fmi3GetShiftDecimal(
 /// # Safety
 /// A live handle, used by one thread at a time; all arrays hold `count` elements.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetShiftFraction(
+pub unsafe extern "C-unwind" fn fmi3GetShiftFraction(
     instance: fmi3Instance,
     references: *const fmi3ValueReference,
     count: usize,
@@ -164,7 +164,7 @@ pub unsafe extern "C" fn fmi3GetShiftFraction(
 /// # Safety
 /// A live handle, used by one thread at a time; both arrays hold `count` elements.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SetIntervalDecimal(
+pub unsafe extern "C-unwind" fn fmi3SetIntervalDecimal(
     instance: fmi3Instance,
     references: *const fmi3ValueReference,
     count: usize,
@@ -185,7 +185,7 @@ pub unsafe extern "C" fn fmi3SetIntervalDecimal(
 /// # Safety
 /// A live handle, used by one thread at a time; all arrays hold `count` elements.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SetIntervalFraction(
+pub unsafe extern "C-unwind" fn fmi3SetIntervalFraction(
     instance: fmi3Instance,
     references: *const fmi3ValueReference,
     count: usize,

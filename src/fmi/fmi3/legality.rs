@@ -19,6 +19,22 @@ const SETTABLE: &[Phase] = &[
     ClockActivationMode,
     Terminated,
 ];
+/// The same, and in the importer's callbacks within a step and an activation. Those may end by an exception or a jump,
+/// after which the importer has but these ways to an instance that it can use: the standard, which knows no exceptions,
+/// leaves none.
+const SETTABLE_ANEW: &[Phase] = &[
+    Instantiated,
+    InitializationMode,
+    ConfigurationMode,
+    ReconfigurationMode,
+    EventMode,
+    ContinuousTimeMode,
+    StepMode,
+    ClockActivationMode,
+    IntermediateUpdateMode,
+    ClockUpdateMode,
+    Terminated,
+];
 const READABLE: &[Phase] = &[
     Instantiated,
     InitializationMode,
@@ -81,7 +97,7 @@ pub const EXIT_INITIALIZATION_MODE: Function =
     Function::new("fmi3ExitInitializationMode", &[InitializationMode]);
 pub const ENTER_EVENT_MODE: Function = Function::new("fmi3EnterEventMode", &[ContinuousTimeMode, StepMode]);
 pub const TERMINATE: Function = Function::new("fmi3Terminate", INITIALIZED);
-pub const RESET: Function = Function::new("fmi3Reset", SETTABLE);
+pub const RESET: Function = Function::new("fmi3Reset", SETTABLE_ANEW);
 
 pub const GET_FLOAT32: Function = Function::new("fmi3GetFloat32", READABLE);
 pub const GET_FLOAT64: Function = Function::new("fmi3GetFloat64", READABLE);
@@ -116,7 +132,7 @@ pub const GET_NUMBER_OF_VARIABLE_DEPENDENCIES: Function =
     Function::new("fmi3GetNumberOfVariableDependencies", SETTABLE);
 pub const GET_VARIABLE_DEPENDENCIES: Function = Function::new("fmi3GetVariableDependencies", SETTABLE);
 pub const GET_FMU_STATE: Function = Function::new("fmi3GetFMUState", SETTABLE);
-pub const SET_FMU_STATE: Function = Function::new("fmi3SetFMUState", SETTABLE);
+pub const SET_FMU_STATE: Function = Function::new("fmi3SetFMUState", SETTABLE_ANEW);
 pub const FREE_FMU_STATE: Function = Function::new("fmi3FreeFMUState", SETTABLE);
 pub const SERIALIZED_FMU_STATE_SIZE: Function = Function::new("fmi3SerializedFMUStateSize", SETTABLE);
 pub const SERIALIZE_FMU_STATE: Function = Function::new("fmi3SerializeFMUState", SETTABLE);

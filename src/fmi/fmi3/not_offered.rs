@@ -13,7 +13,7 @@ macro_rules! not_offered {
         /// # Safety
         /// A live handle, used by one thread at a time; the other arguments are not touched.
         #[unsafe(no_mangle)]
-        pub unsafe extern "C" fn $function(instance: fmi3Instance $(, $argument: $type)*) -> fmi3Status {
+        pub unsafe extern "C-unwind" fn $function(instance: fmi3Instance $(, $argument: $type)*) -> fmi3Status {
             // SAFETY: the caller's promise.
             unsafe { enter(instance, &may::$rule, |_| Err(CallError::NotOffered($because))) }
         }

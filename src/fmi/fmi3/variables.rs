@@ -22,7 +22,7 @@ macro_rules! accessors {
         /// # Safety
         /// A live handle, used by one thread at a time; the arrays hold as many elements as the counts say.
         #[unsafe(no_mangle)]
-        pub unsafe extern "C" fn $get(
+        pub unsafe extern "C-unwind" fn $get(
             instance: fmi3Instance,
             references: *const fmi3ValueReference,
             count: usize,
@@ -48,7 +48,7 @@ macro_rules! accessors {
         /// # Safety
         /// A live handle, used by one thread at a time; the arrays hold as many elements as the counts say.
         #[unsafe(no_mangle)]
-        pub unsafe extern "C" fn $set(
+        pub unsafe extern "C-unwind" fn $set(
             instance: fmi3Instance,
             references: *const fmi3ValueReference,
             count: usize,
@@ -104,7 +104,7 @@ const BINARY: DataType = DataType { name: "a Binary", carries: |_| false, standa
 /// # Safety
 /// A live handle, used by one thread at a time; the arrays hold as many elements as the counts say.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetBinary(
+pub unsafe extern "C-unwind" fn fmi3GetBinary(
     instance: fmi3Instance,
     references: *const fmi3ValueReference,
     count: usize,
@@ -125,7 +125,7 @@ pub unsafe extern "C" fn fmi3GetBinary(
 /// # Safety
 /// A live handle, used by one thread at a time; the arrays hold as many elements as the counts say.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SetBinary(
+pub unsafe extern "C-unwind" fn fmi3SetBinary(
     instance: fmi3Instance,
     references: *const fmi3ValueReference,
     count: usize,

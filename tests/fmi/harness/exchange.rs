@@ -196,8 +196,8 @@ impl Component {
     fn vector(
         &self,
         count: usize,
-        fmi2: unsafe extern "C" fn(*mut c_void, *mut f64, usize) -> i32,
-        fmi3: unsafe extern "C" fn(*mut c_void, *mut f64, usize) -> i32,
+        fmi2: unsafe extern "C-unwind" fn(*mut c_void, *mut f64, usize) -> i32,
+        fmi3: unsafe extern "C-unwind" fn(*mut c_void, *mut f64, usize) -> i32,
     ) -> Vec<f64> {
         let mut values = vec![f64::NAN; count];
         let function = if self.standard == Standard::Fmi2 { fmi2 } else { fmi3 };
