@@ -39,6 +39,7 @@ enum InstantiationError<'a> {
     State(#[from] StateError),
 }
 
+#[allow(clippy::result_large_err, reason = "messages lie on the stack, for there may be no heap left")]
 impl Request<'_> {
     /// What is to be said of the instance when it is about to be made, or why there will be none.
     pub(super) fn announce(&self) -> Result<Message, Message> {

@@ -3,6 +3,9 @@
 //! At the callback the tick is due and not yet run: the importer may set the continuous inputs as of that time, which
 //! the tick then reads, or end the step there. The first tick of a step that starts at it needs no callback, its inputs
 //! were just set. Plants make no steps of their own within a communication step and call nobody.
+//!
+//! A callback that does not come back, ended by an exception or a jump, leaves the step where it is: the importer frees or
+//! resets the instance, or restores a state from before.
 
 use super::fmi3::types::{fmi3InstanceEnvironment, fmi3IntermediateUpdateCallback};
 use super::ticking::{StepEnd, sampled};

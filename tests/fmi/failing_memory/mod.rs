@@ -234,7 +234,9 @@ fn every_allocation_of_saved_states_may_fail() {
         let mut state = null_mut();
         type Call<'a> = &'a dyn Fn(&mut *mut c_void) -> i32;
         let calls: [Call; 2] =
-            [&|state| component.get_state(state), &|state| component.deserialise_state(&bytes, state)];
+            [&|state: &mut *mut c_void| component.get_state(state), &|state: &mut *mut c_void| {
+                component.deserialise_state(&bytes, state)
+            }];
         for call in calls {
             MESSAGES.set(0);
             let mut failures = 0;

@@ -209,7 +209,7 @@ fn ticks_at_events_and_on_activation_are_the_same_in_every_host() {
 
 #[test]
 fn derivatives_are_the_same_in_every_host() {
-    let integrate = |component: &Component, time: f64| {
+    let integrate = |component: &Component, time: f64| -> i32 {
         component.set_time(time);
         let state = [time, -time, 1e200, 1e-320];
         let mut sensitivity = [0.0];

@@ -50,17 +50,21 @@ fn component(importer: &Importer, standard: Standard, logging_on: bool) -> Compo
     Component::from_handle(standard, CONTROLLER, handle, Box::default())
 }
 
-/// Inputs and steps that let the observer converge and diverge.
-fn steps(component: &Component, from: i32, to: i32) {
-    for k in from..to {
-        assert_eq!(step(component, k), OK);
-    }
+/// Time and position of step `k`: with curvature and without, so that the observer converges and diverges.
+fn sample(k: i32) -> (f64, f64) {
+    let time = f64::from(k) * 1e-3;
+    (time, if k % 50 < 25 { 0.01 + time * time } else { 0.01 })
 }
 
-fn step(component: &Component, k: i32) -> i32 {
-    let time = f64::from(k) * 1e-3;
-    assert_eq!(component.set("position", if k % 50 < 25 { 0.01 + time * time } else { 0.01 }), OK);
+fn step(component: &Component, (time, position): (f64, f64)) -> i32 {
+    assert_eq!(component.set("position", position), OK);
     component.step(time, 1e-3)
+}
+
+fn steps(component: &Component, from: i32, to: i32) {
+    for k in from..to {
+        assert_eq!(step(component, sample(k)), OK);
+    }
 }
 
 #[test]
@@ -126,8 +130,9 @@ fn a_remark_within_a_step_may_be_left() {
                 importer.take_messages();
                 let mut times_left = 0;
                 for k in 0..200 {
+                    let sample = sample(k);
                     importer.leave_after(calls);
-                    times_left += i32::from(protect(importer, || step(&component, k)).is_none());
+                    times_left += i32::from(protect(importer, || step(&component, sample)).is_none());
                 }
                 // One step over many ticks, with many remarks, each of which is left.
                 importer.leave_after(calls);
