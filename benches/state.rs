@@ -35,9 +35,9 @@ impl Subject {
             let (reference, _) = unit.description().find(name).expect("a variable of the table");
             unit.values_mut()[reference] = *value;
         }
-        let logger = Logger::new(Callback::None, c"subject".into(), false);
-        let handle: *mut c_void =
-            Box::into_raw(Box::new(Instance::new(unit, Interface::CoSimulation, logger))).cast();
+        let logger = Logger::new(Callback::None, c"subject", false).unwrap();
+        let instance = Instance::new(unit, Interface::CoSimulation, logger).unwrap();
+        let handle: *mut c_void = Box::into_raw(Box::new(instance)).cast();
         let (mut state, mut size) = (null_mut(), 0);
         // SAFETY: a live handle, room for the results.
         unsafe {

@@ -135,9 +135,6 @@ impl Unit for Baseline {
         }
         Ok(())
     }
-    fn boxed_clone(&self) -> Box<dyn Unit> {
-        Box::new(self.clone())
-    }
 }
 
 /// A controller, or what passes for one, with some values.

@@ -68,7 +68,7 @@ fn uses_of_the_heap(action: impl FnOnce()) -> u64 {
 }
 
 /// Loggers that count messages in the environment, an [`AtomicU32`].
-unsafe extern "C" fn count_fmi2(
+unsafe extern "C-unwind" fn count_fmi2(
     environment: *mut c_void,
     _: *const c_char,
     _: i32,
@@ -79,13 +79,13 @@ unsafe extern "C" fn count_fmi2(
     unsafe { &*environment.cast::<AtomicU32>() }.fetch_add(1, Ordering::Relaxed);
 }
 
-unsafe extern "C" fn count_fmi3(environment: *mut c_void, _: i32, _: *const c_char, _: *const c_char) {
+unsafe extern "C-unwind" fn count_fmi3(environment: *mut c_void, _: i32, _: *const c_char, _: *const c_char) {
     // SAFETY: the environment that the instance was given.
     unsafe { &*environment.cast::<AtomicU32>() }.fetch_add(1, Ordering::Relaxed);
 }
 
 fn counting(standard: Standard, unit: &str, messages: &AtomicU32, logging_on: bool) -> Component {
-    type Fixed = unsafe extern "C" fn(*mut c_void, *const c_char, i32, *const c_char, *const c_char);
+    type Fixed = unsafe extern "C-unwind" fn(*mut c_void, *const c_char, i32, *const c_char, *const c_char);
     // SAFETY: as for the recording logger of the harness.
     let logger2 = unsafe { transmute::<Fixed, fmi2CallbackLogger>(count_fmi2) };
     let token = CString::new(description(unit).token().as_str()).unwrap();
@@ -206,8 +206,8 @@ fn ticks_at_events_and_on_activation_use_no_heap() {
                 time = step.reached;
                 assert_eq!(component.enter_event_mode(), OK);
                 assert_eq!(component.set_clock(component.clocks()[0], 1), OK);
-                component.settle_event();
                 assert_eq!(component.get_clock(component.clocks()[1]).0, OK);
+                component.settle_event();
                 assert_eq!(component.enter_step_mode(), OK);
             }
         });

@@ -36,8 +36,8 @@ impl<const INPUTS: usize> Component<INPUTS> {
         }
         let inputs = inputs.map(|name| reference(&unit, name));
         let outputs = outputs.map(|name| reference(&unit, name));
-        let logger = Logger::new(Callback::None, c"bench".into(), false);
-        let instance = Instance::new(Box::new(unit), Interface::CoSimulation, logger);
+        let logger = Logger::new(Callback::None, c"bench", false).unwrap();
+        let instance = Instance::new(Box::new(unit), Interface::CoSimulation, logger).unwrap();
         Self { handle: Box::into_raw(Box::new(instance)).cast(), inputs, outputs }
     }
 
@@ -50,9 +50,9 @@ impl<const INPUTS: usize> Component<INPUTS> {
             fmi2ExitInitializationMode(self.handle);
         }
         // Through opaque pointers, as if loaded: nothing is inlined into the loop.
-        let set: unsafe extern "C" fn(_, *const _, _, *const _) -> _ = black_box(fmi2SetReal);
-        let step: unsafe extern "C" fn(_, _, _, _) -> _ = black_box(fmi2DoStep);
-        let get: unsafe extern "C" fn(_, *const _, _, *mut _) -> _ = black_box(fmi2GetReal);
+        let set: unsafe extern "C-unwind" fn(_, *const _, _, *const _) -> _ = black_box(fmi2SetReal);
+        let step: unsafe extern "C-unwind" fn(_, _, _, _) -> _ = black_box(fmi2DoStep);
+        let get: unsafe extern "C-unwind" fn(_, *const _, _, *mut _) -> _ = black_box(fmi2GetReal);
         let mut outputs = [0.0; 4];
         let mut failures = 0;
         let mut time = 0.0;

@@ -1,14 +1,13 @@
 //! Reading and writing variables by value reference.
 
-use super::{CallError, Instance, Phase};
+use super::{CallError, FmiVersion, Instance, Phase};
 use crate::unit::variable::{Causality, Kind, Variability, Variable};
 
 /// A data type of a standard: its name there and the kinds of variables it carries.
 pub(super) struct DataType {
     pub name: &'static str,
     pub carries: fn(&Kind) -> bool,
-    /// Whether the standard has clocks, too.
-    pub has_clocks: bool,
+    pub standard: FmiVersion,
 }
 
 impl Instance {
@@ -46,7 +45,7 @@ impl Instance {
         let mut parameters_changed = false;
         for (reference, value) in references.iter().zip(values) {
             let variable = self.find(data_type, *reference)?;
-            self.require_settable(*reference, variable)?;
+            self.require_settable(data_type.standard, *reference, variable)?;
             variable.check(convert(*value))?;
             parameters_changed |= variable.causality == Causality::Parameter;
         }
@@ -77,7 +76,7 @@ impl Instance {
     /// Why there is no variable with this value reference.
     #[cold]
     fn no_variable(&self, data_type: &DataType, reference: u32) -> CallError {
-        if !data_type.has_clocks {
+        if data_type.standard == FmiVersion::Two {
             return CallError::UnknownReference { reference, largest: self.variables.len() - 1 };
         }
         let mut clocks = self.unit.description().clocks();
@@ -113,16 +112,33 @@ impl Instance {
         })
     }
 
-    /// Before the first step parameters and inputs may be set, afterwards inputs and tunable parameters. An importer
-    /// that integrates the unit may set continuous inputs and states in continuous time, and at an event also states
-    /// that do not jump (FMI 3.0.2, section 2.3.5). Within a step continuous inputs may be set, too.
+    /// Whether the importer has been called back within a step and has not registered the variable (FMI 3.0.2, section
+    /// 4.2.2).
     #[inline]
-    fn require_settable(&self, reference: u32, variable: &Variable) -> Result<(), CallError> {
+    fn is_unregistered(&self, reference: u32) -> bool {
+        self.phase == Phase::IntermediateUpdateMode
+            && !self.intermediate_update.is_some_and(|update| update.registered.contains(reference))
+    }
+
+    /// Before the first step parameters and inputs may be set, afterwards inputs and tunable parameters. An importer
+    /// that integrates the unit may set continuous inputs and states in continuous time, and by FMI 3.0 at an event also
+    /// states that do not jump (section 2.3.5; not so FMI 2.0.5, table in section 3.2.3). Within a step registered
+    /// continuous inputs may be set, too.
+    #[inline]
+    fn require_settable(
+        &self,
+        standard: FmiVersion,
+        reference: u32,
+        variable: &Variable,
+    ) -> Result<(), CallError> {
         let is_initial = matches!(self.phase, Phase::Instantiated | Phase::InitializationMode);
         let is_continuous_time =
             matches!(self.phase, Phase::ContinuousTimeMode | Phase::IntermediateUpdateMode);
         let why = match (variable.causality, variable.variability) {
-            (Causality::Input, Variability::Continuous) => return Ok(()),
+            (Causality::Input, Variability::Continuous) if !self.is_unregistered(reference) => return Ok(()),
+            (Causality::Input, Variability::Continuous) => {
+                "an input that requiredIntermediateVariables lacks"
+            }
             (Causality::Input, _) | (Causality::Parameter, Variability::Tunable) if !is_continuous_time => {
                 return Ok(());
             }
@@ -133,7 +149,9 @@ impl Instance {
             (Causality::Independent, _) => "the independent variable",
             _ if self.rows.states().contains(&(reference as usize)) => match self.phase {
                 Phase::ContinuousTimeMode => return Ok(()),
-                Phase::EventMode if !variable.is_reinitialised => return Ok(()),
+                Phase::EventMode if standard == FmiVersion::Three && !variable.is_reinitialised => {
+                    return Ok(());
+                }
                 _ => "a continuous state",
             },
             _ => "calculated by the unit",

@@ -1,8 +1,15 @@
-//! The one way from C into an instance.
+//! The one way from C into an instance, and back to the importer's logger.
+//!
+//! A call has two parts. Within the first the unit computes, in a floating-point environment of its own, a panic is
+//! caught, and messages are collected. In the second they are sent: the logger may throw or jump away over what is on
+//! the stack by then, which is plain memory, and finds the instance as the call has left it. Other callbacks are called
+//! between two such calls.
 
 use core::ffi::c_void;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use super::floating_point::in_default_environment;
+use super::instantiation::Request;
 use super::{CallError, Function, Instance, Phase, Status};
 
 /// Runs `body` on the instance behind `handle` if `function` may be called now; turns refusals into a log message
@@ -17,36 +24,100 @@ pub(super) unsafe fn enter(
     function: &Function,
     body: impl FnOnce(&mut Instance) -> Result<(), CallError>,
 ) -> i32 {
+    let handle = handle.cast::<Instance>();
     // SAFETY: null is handled by `as_mut`; otherwise the caller's promise.
-    let Some(instance) = (unsafe { handle.cast::<Instance>().as_mut() }) else {
+    let Some(instance) = (unsafe { handle.as_mut() }) else {
         return Status::Error as i32;
     };
-    let outcome = catch_unwind(AssertUnwindSafe(|| {
-        instance.require(function)?;
-        body(instance)
-    }));
-    match outcome {
-        Ok(Ok(())) => Status::Ok as i32,
-        Ok(Err(error)) => {
-            let status = error.status();
-            instance.logger.refusal(status, format_args!("{}: {error}", function.name));
-            status as i32
+    let status = guarded(|| {
+        let outcome = match instance.require(function) {
+            Ok(()) => body(instance),
+            Err(error) => Err(error),
+        };
+        match outcome {
+            Ok(()) => Status::Ok,
+            Err(error) => refuse(instance, function, &error),
         }
-        Err(_) => {
-            instance.phase = Phase::Fatal;
-            instance.logger.fatal(format_args!(
-                "{}: internal error, the instance is lost and can only be freed",
-                function.name
-            ));
-            Status::Fatal as i32
-        }
+    });
+    let status = match status {
+        Some(status) => status,
+        None => lose(instance, function),
+    };
+    if !instance.logger.outbox.is_empty() {
+        // SAFETY: a live instance; the reference above is not used again.
+        unsafe { deliver(handle) };
+    }
+    status as i32
+}
+
+#[cold]
+fn refuse(instance: &mut Instance, function: &Function, error: &CallError) -> Status {
+    let status = error.status();
+    instance.logger.refusal(status, format_args!("{}: {error}", function.name));
+    status
+}
+
+#[cold]
+fn lose(instance: &mut Instance, function: &Function) -> Status {
+    instance.phase = Phase::Fatal;
+    let name = function.name;
+    let message = format_args!("{name}: internal error, the instance is lost and can only be freed");
+    instance.logger.refusal(Status::Fatal, message);
+    Status::Fatal
+}
+
+/// Result of `body`, which computes in the default floating-point environment; `None` if it panicked.
+#[inline]
+fn guarded<R>(body: impl FnOnce() -> R) -> Option<R> {
+    in_default_environment(|| catch_unwind(AssertUnwindSafe(body)).ok())
+}
+
+/// Sends what an instance has to say. What the importer leaves unread by not coming back follows the next call.
+///
+/// # Safety
+/// A live instance to which no reference is alive.
+#[cold]
+unsafe fn deliver(handle: *mut Instance) {
+    loop {
+        // SAFETY: the caller's promise; the reference ends before the importer is called.
+        let logger = unsafe { &mut (*handle).logger };
+        let (callback, name) = (logger.callback, logger.instance_name());
+        let Some(message) = logger.outbox.take() else { return };
+        // SAFETY: the importer vouches for its callback and environment as long as the instance lives.
+        unsafe { callback.send(name, &message) };
     }
 }
 
-/// Runs `make` and hands its instance to the importer; null if there is none.
-pub(super) fn create(make: impl FnOnce() -> Option<Instance>) -> *mut c_void {
-    let made = catch_unwind(AssertUnwindSafe(make)).unwrap_or_default();
-    made.map_or(core::ptr::null_mut(), |instance| Box::into_raw(Box::new(instance)).cast())
+/// Makes the instance that is asked for and hands it to the importer; null and a message if there is none.
+///
+/// # Safety
+/// The importer vouches for its callback.
+pub(super) unsafe fn create(
+    request: &Request<'_>,
+    configure: impl FnOnce(&mut Instance) -> Result<(), CallError>,
+) -> *mut c_void {
+    let callback = request.callback;
+    let name = request.name.unwrap_or(c"").as_ptr();
+    let announced = guarded(|| request.announce());
+    let message = match announced {
+        Some(Ok(message)) => {
+            if request.logging_on {
+                // An instance would be out of reach for ever if the importer did not come back: it is made after this.
+                // SAFETY: the caller's promise.
+                unsafe { callback.send(name, &message) };
+            }
+            match guarded(|| request.make(configure).map(Box::into_raw)) {
+                Some(Ok(instance)) => return instance.cast(),
+                Some(Err(message)) => message,
+                None => request.failure(),
+            }
+        }
+        Some(Err(message)) => message,
+        None => request.failure(),
+    };
+    // SAFETY: the caller's promise.
+    unsafe { callback.send(name, &message) };
+    core::ptr::null_mut()
 }
 
 /// Takes an instance back and drops it; null is ignored.

@@ -1,4 +1,4 @@
-//! Communication points: whether a step follows the one before, and how much time really passes.
+//! Communication points: whether a step follows the one before, how much time really passes, and where time ends.
 
 use super::CallError;
 use serde::{Deserialize, Serialize};
@@ -6,19 +6,22 @@ use serde::{Deserialize, Serialize};
 /// Rounding that importers accumulate between two communication points, in units in the last place.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// Share of a step by which the next communication point may miss the end of the last step.
-const TOLERANCE: f64 = 1e-3;
+/// Share of a step by which its begin may miss the end of the last step, and its end the stop time, by rounding.
+const TOLERANCE: f64 = 1e-9;
 
-/// The point the simulation has reached.
+/// The point the simulation has reached, and the one it must not pass.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CommunicationPoint {
     /// \[s\]
     now: f64,
+    /// \[s\], infinite if none is defined: a number, so that saved states have a fixed size.
+    stop_time: f64,
 }
 
 impl CommunicationPoint {
-    pub fn new(start_time: f64) -> Self {
-        Self { now: start_time }
+    /// Stands at `start_time`; `stop_time` is `None` if the importer defines none, both in s.
+    pub fn new(start_time: f64, stop_time: Option<f64>) -> Self {
+        Self { now: start_time, stop_time: stop_time.unwrap_or(f64::INFINITY) }
     }
 
     /// Time reached \[s\].
@@ -26,10 +29,17 @@ impl CommunicationPoint {
         self.now
     }
 
+    /// Whether a simulation that began at `start_time` \[s\] can stand here.
+    pub fn is_possible_after(&self, start_time: f64) -> bool {
+        self.now.is_finite() && start_time.is_finite() && self.stop_time >= start_time
+    }
+
     /// Time \[s\] that passes in a step from `point` over `step_size`, both in s.
     ///
     /// A difference between `point` and the end of the last step is taken for rounding and ignored up to a few
-    /// units in the last place, passes in addition up to a thousandth of the step, and is an error beyond.
+    /// units in the last place, passes in addition up to a billionth of the step, and is an error beyond. A step that
+    /// ends after the stop time is an error, too, unless rounding alone carries it there (FMI 2.0.5, section 2.1.6;
+    /// FMI 3.0.2, section 2.3.2).
     pub fn duration(&self, point: f64, step_size: f64) -> Result<f64, CallError> {
         if !(step_size.is_finite() && step_size > 0.0) {
             let expected = "a finite step greater than 0 s";
@@ -56,18 +66,37 @@ impl CommunicationPoint {
             });
         }
         let gap = point - self.now;
-        if gap.abs() <= ROUNDING * point.abs().max(self.now.abs()).max(step_size) {
-            Ok(step_size)
+        let passes = if gap.abs() <= ROUNDING * point.abs().max(self.now.abs()).max(step_size) {
+            step_size
         } else if gap.abs() <= TOLERANCE * step_size {
-            Ok(step_size + gap)
+            step_size + gap
         } else {
-            Err(CallError::TimeDoesNotFollow { got: point, expected: self.now })
+            return Err(CallError::TimeDoesNotFollow { got: point, expected: self.now });
+        };
+        let argument = "currentCommunicationPoint + communicationStepSize";
+        self.require_before_stop_time(argument, point + step_size, step_size)?;
+        Ok(passes)
+    }
+
+    /// Refuses a `time` \[s\] after the stop time; rounding is measured by `step`, the way that leads there \[s\].
+    #[inline]
+    pub fn require_before_stop_time(
+        &self,
+        argument: &'static str,
+        time: f64,
+        step: f64,
+    ) -> Result<(), CallError> {
+        let excess = time - self.stop_time;
+        if excess <= TOLERANCE * step + ROUNDING * time.abs() {
+            Ok(())
+        } else {
+            Err(CallError::PastStopTime { argument, time, stop_time: self.stop_time })
         }
     }
 
-    /// The step from `point` over `step_size` is done.
-    pub fn advance(&mut self, point: f64, step_size: f64) {
-        self.now = point + step_size;
+    /// Time has come to `time` \[s\].
+    pub fn move_to(&mut self, time: f64) {
+        self.now = time;
     }
 }
 
@@ -77,17 +106,50 @@ mod tests {
 
     #[test]
     fn rounding_is_ignored_and_small_gaps_pass() {
-        let mut point = CommunicationPoint::new(0.0);
+        let mut point = CommunicationPoint::new(0.0, None);
         assert_eq!(point.duration(0.0, 0.1), Ok(0.1));
-        point.advance(0.0, 0.1);
+        point.move_to(0.1);
         assert_eq!(point.duration(0.100_000_000_000_000_03, 0.1), Ok(0.1));
-        assert_eq!(point.duration(0.100_01, 0.1), Ok(0.100_01));
+        assert_eq!(point.duration(0.100_000_000_05, 0.1), Ok(0.1 + (0.100_000_000_05 - 0.1)));
         assert_eq!(point.now(), 0.1);
     }
 
     #[test]
+    fn a_gap_beyond_rounding_does_not_follow_however_long_the_step() {
+        let mut point = CommunicationPoint::new(0.0, None);
+        point.move_to(1e-3);
+        for (time, step_size) in [(0.9, 1000.0), (1.001e-3, 1e-3), (0.999e-3, 1e-3), (1e-3 + 1e-11, 1e-3)] {
+            let refused = point.duration(time, step_size);
+            assert_eq!(refused, Err(CallError::TimeDoesNotFollow { got: time, expected: 1e-3 }));
+        }
+    }
+
+    #[test]
+    fn steps_end_at_the_stop_time_but_for_rounding() {
+        let (stop_time, h) = (0.01, 1e-3);
+        let mut point = CommunicationPoint::new(0.0, Some(stop_time));
+        point.move_to(0.009);
+        for beyond in [0.0, 1e-12] {
+            assert!(point.duration(0.009, h + beyond).is_ok(), "{beyond}");
+        }
+        let late = point.duration(0.009, h + 3e-12);
+        assert!(
+            matches!(late, Err(CallError::PastStopTime { stop_time: 0.01, .. })),
+            "three billionths of a step: {late:?}"
+        );
+        assert_eq!(
+            point.duration(0.009, 2e-3).unwrap_err().to_string(),
+            "currentCommunicationPoint + communicationStepSize = 0.011 s is past the stop time: expected at most 0.01 s"
+        );
+        // Late in a long simulation a billionth of a step is less than the last digit of the time.
+        let mut point = CommunicationPoint::new(0.0, Some(1e6));
+        point.move_to(1e6 - 1e-4);
+        assert!(point.duration(1e6 - 1e-4, 1e-4 + 1e-10).is_ok());
+    }
+
+    #[test]
     fn times_that_make_no_sense_are_named() {
-        let point = CommunicationPoint::new(1.0);
+        let point = CommunicationPoint::new(1.0, None);
         let message = |t, h| point.duration(t, h).unwrap_err().to_string();
         assert_eq!(
             message(0.9, 0.1),
@@ -101,7 +163,7 @@ mod tests {
             assert!(message(1.0, step_size).starts_with("communicationStepSize"));
         }
         assert!(message(f64::NAN, 0.1).starts_with("currentCommunicationPoint = NaN s"));
-        let late = CommunicationPoint::new(1e308);
+        let late = CommunicationPoint::new(1e308, None);
         assert!(late.duration(1e308, 1e308).unwrap_err().to_string().ends_with("ends at a finite time"));
     }
 }

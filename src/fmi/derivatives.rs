@@ -94,7 +94,8 @@ impl Instance {
         Ok(())
     }
 
-    fn require_co_simulation(&self) -> Result<(), CallError> {
+    /// Refuses functions that belong to co-simulation alone on instances that were made for something else.
+    pub(super) fn require_co_simulation(&self) -> Result<(), CallError> {
         match self.interface {
             Interface::CoSimulation => Ok(()),
             other => Err(CallError::WrongInterface(other.name())),

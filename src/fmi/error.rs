@@ -29,14 +29,22 @@ pub enum CallError {
     WrongTime { argument: &'static str, value: f64, expected: &'static str },
     #[error("currentCommunicationPoint = {got} s does not follow the last one: expected {expected} s")]
     TimeDoesNotFollow { got: f64, expected: f64 },
+    #[error("{argument} = {time} s is past the stop time: expected at most {stop_time} s")]
+    PastStopTime { argument: &'static str, time: f64, stop_time: f64 },
+    #[error(
+        "time = {got} s goes back beyond the last event or the completed step before the last: expected at least {earliest} s"
+    )]
+    TimeGoesBack { got: f64, earliest: f64 },
     #[error(transparent)]
     Unit(#[from] UnitError),
     #[error("{name} (value reference {reference}) is a variable, not a clock")]
     NoClock { name: &'static str, reference: u32 },
     #[error("{name} (value reference {reference}) is a clock, not {asked}")]
     IsClock { name: &'static str, reference: u32, asked: &'static str },
-    #[error("no tick is due at t = {now} s: expected t = {next} s")]
-    NoTick { now: f64, next: f64 },
+    #[error(
+        "no tick is due at t = {now} s: expected t = {next} s, the next multiple of sample_time = {period} s"
+    )]
+    NoTick { now: f64, next: f64, period: f64 },
     #[error("a clock that was activated stays active until the end of the event iteration")]
     ClockStaysActive,
     #[error("activationTime = {got} s: expected a finite time after {last} s")]

@@ -1,6 +1,6 @@
 //! Event mode, which model exchange and co-simulation share.
 
-use super::ticking::{ClockStates, sampled};
+use super::ticking::sampled;
 use super::{CallError, Instance, Interface, Phase};
 
 /// What an importer learns from the end of an event iteration.
@@ -27,28 +27,39 @@ impl Instance {
     }
 
     /// Discrete transitions. Those of model exchange are settled by one call, and there are no time events. In
-    /// co-simulation the tick that is due is run, if there is one, and another iteration shows its results.
+    /// co-simulation the tick is run whose clock is active, and another iteration shows its results.
     pub(super) fn update_discrete_states(&mut self) -> Result<EventEnd, CallError> {
         if self.interface == Interface::ModelExchange {
             let have_states_changed = self.update_states_of_integration()?;
             return Ok(EventEnd { is_unfinished: false, have_states_changed, next_event_time: None });
         }
+        let is_active = core::mem::take(&mut self.clocks.is_tick_active);
+        if is_active {
+            self.run_due_tick()?;
+        }
+        let clock = sampled(&mut *self.unit)?.clock();
+        // A tick that is still due belongs to this event; the next one is that after it.
+        let next = clock.next_number().saturating_add(i64::from(clock.is_due()));
+        let next_event_time = Some(clock.time_of(next));
+        Ok(EventEnd { is_unfinished: is_active, have_states_changed: false, next_event_time })
+    }
+
+    fn run_due_tick(&mut self) -> Result<(), CallError> {
         let unit = sampled(&mut *self.unit)?;
-        let is_due = unit.clock().is_due();
-        if is_due {
+        if unit.clock().is_due() {
             let time = unit.clock_mut().take();
             unit.tick(time, &mut self.logger);
         }
-        let next_event_time = Some(unit.clock().next_time());
-        self.clocks = ClockStates { has_ticked: is_due, ..ClockStates::default() };
-        Ok(EventEnd { is_unfinished: is_due, have_states_changed: false, next_event_time })
+        Ok(())
     }
 
     pub(super) fn enter_step_mode(&mut self) -> Result<(), CallError> {
         if self.interface == Interface::ModelExchange {
             return Err(CallError::WrongInterface(self.interface.name()));
         }
-        self.clocks = ClockStates::default();
+        // Of an importer that knows no clocks, or left the event without another update.
+        self.run_due_tick()?;
+        self.clocks.is_tick_active = false;
         self.phase = Phase::StepMode;
         Ok(())
     }

@@ -35,9 +35,31 @@ pub(super) fn fraction(value: f64) -> Option<(u64, u64)> {
     None
 }
 
+/// Time from `start` to `number * period`, all in s, as a fraction of whole numbers in lowest terms: exact for the decimal
+/// numbers that `start` and `period` stand for, 0 if it is negative. None if 64 bits are too few.
+pub(super) fn time_from(start: f64, number: i64, period: f64) -> Option<(u64, u64)> {
+    let (period_counter, period_resolution) = fraction(period)?;
+    let (start_counter, start_resolution) = fraction(start.abs())?;
+    let signed = |counter: u64| i128::from(counter) * if start < 0.0 { -1 } else { 1 };
+    let tick = i128::from(number).checked_mul(period_counter.into())?.checked_mul(start_resolution.into())?;
+    let start = signed(start_counter).checked_mul(period_resolution.into())?;
+    let counter = tick.checked_sub(start)?.max(0).unsigned_abs();
+    let resolution = u128::from(period_resolution) * u128::from(start_resolution);
+    let divisor = greatest_common_divisor(counter, resolution);
+    Some((u64::try_from(counter / divisor).ok()?, u64::try_from(resolution / divisor).ok()?))
+}
+
+/// Of two numbers of which the second is not 0.
+fn greatest_common_divisor(mut a: u128, mut b: u128) -> u128 {
+    while a != 0 {
+        (a, b) = (b % a, a);
+    }
+    b
+}
+
 #[cfg(test)]
 mod tests {
-    use super::fraction;
+    use super::{fraction, time_from};
     use proptest::prelude::*;
 
     #[test]
@@ -59,7 +81,32 @@ mod tests {
         assert_eq!(fraction(5e-324), None);
     }
 
+    #[test]
+    fn times_between_decimal_numbers_are_exact() {
+        for (start, number, period, expected) in [
+            (0.00025, 3, 1e-4, (1, 20_000)),
+            (0.0025, 3, 1e-3, (1, 2000)),
+            (0.0025, 9, 0.3e-3, (1, 5000)),
+            (-0.00025, -2, 1e-4, (1, 20_000)),
+            (0.0, 0, 1e-3, (0, 1)),
+            (2e-3, 2, 1e-3, (0, 1)),
+            (0.001_000_000_01, 1, 1e-3, (0, 1)),
+        ] {
+            assert_eq!(time_from(start, number, period), Some(expected), "{start} {number} {period}");
+        }
+        assert_eq!(time_from(f64::MAX, i64::MAX, 1e-4), None);
+    }
+
     proptest! {
+        #[test]
+        fn times_are_those_of_the_doubles(start in 0.0..1e3f64, steps in 0i64..10_000, period in 1e-6..10.0f64) {
+            let number = (start / period) as i64 + 1 + steps;
+            if let Some((counter, resolution)) = time_from(start, number, period) {
+                let expected = number as f64 * period - start;
+                prop_assert!((counter as f64 / resolution as f64 - expected).abs() <= 1e-12 * (1.0 + start));
+            }
+        }
+
         #[test]
         fn every_sample_time_has_one(value in 1e-6..10.0f64) {
             let (counter, resolution) = fraction(value).unwrap();

@@ -1,22 +1,21 @@
 //! An instantiated unit with its life cycle.
 
-use core::ffi::CStr;
 use core::fmt;
 
 use super::fmi3::types::{fmi3ClockUpdateCallback, fmi3InstanceEnvironment};
 use super::intermediate_update::{IntermediateUpdate, StepInProgress};
+use super::model_exchange::EarliestTime;
 use super::saved_state::Life;
 use super::ticking::ClockStates;
-use super::{CallError, Callback, CommunicationPoint, Function, Interface, Logger, Phase};
-use crate::unit::start_values::read_token;
+use super::{CallError, CommunicationPoint, Function, Interface, Logger, Phase, SavedState, StateError};
 use crate::unit::variable::Variable;
-use crate::unit::{ContinuousRows, Description, Journal, TIME, Topic, Unit};
+use crate::unit::{ContinuousRows, Journal, TIME, Topic, Unit};
 
 /// What a handle (`fmi2Component`, `fmi3Instance`) points to.
 pub struct Instance {
     pub(super) unit: Box<dyn Unit>,
-    /// The unit as made, for reset.
-    template: Box<dyn Unit>,
+    /// As made, for reset.
+    pub(super) start: SavedState,
     pub(super) variables: &'static [Variable],
     /// Where the table holds what moves in continuous time.
     pub(super) rows: ContinuousRows,
@@ -24,6 +23,8 @@ pub struct Instance {
     pub(super) phase: Phase,
     pub(super) logger: Logger,
     pub(super) communication: CommunicationPoint,
+    /// How far an importer that integrates the unit may go back.
+    pub(super) earliest_time: EarliestTime,
     pub(super) start_time: f64,
     /// Whether a value was set since the calculated ones were last computed, before the first step.
     pub(super) is_stale: bool,
@@ -40,16 +41,18 @@ pub struct Instance {
 
 impl Instance {
     /// An instance of any unit, not only of those the library knows by token.
-    pub fn new(unit: Box<dyn Unit>, interface: Interface, logger: Logger) -> Self {
-        Self {
-            template: unit.boxed_clone(),
-            variables: unit.description().variables,
-            rows: ContinuousRows::of(unit.description()),
+    pub fn new(unit: Box<dyn Unit>, interface: Interface, logger: Logger) -> Result<Self, StateError> {
+        let description = unit.description();
+        let mut instance = Self {
+            start: SavedState::new(description),
+            variables: description.variables,
+            rows: ContinuousRows::of(description),
             unit,
             interface,
             phase: Phase::Instantiated,
             logger,
-            communication: CommunicationPoint::new(0.0),
+            communication: CommunicationPoint::new(0.0, None),
+            earliest_time: EarliestTime::at_event(0.0),
             start_time: 0.0,
             is_stale: true,
             needs_evaluation: false,
@@ -57,7 +60,11 @@ impl Instance {
             intermediate_update: None,
             step: None,
             clock_update: None,
-        }
+        };
+        let mut start = SavedState::new(description);
+        instance.save(&mut start)?;
+        instance.start = start;
+        Ok(instance)
     }
 
     #[inline]
@@ -69,7 +76,7 @@ impl Instance {
         }
     }
 
-    /// Start and stop time of the experiment \[s\]; the stop time only has to make sense, steps may go beyond.
+    /// Start and stop time of the experiment \[s\]; nothing is computed past the stop time, if there is one.
     pub(super) fn set_experiment(
         &mut self,
         start_time: f64,
@@ -86,7 +93,8 @@ impl Instance {
             return Err(CallError::WrongTime { argument: "stopTime", value: stop_time, expected });
         }
         self.start_time = start_time;
-        self.communication = CommunicationPoint::new(start_time);
+        self.communication = CommunicationPoint::new(start_time, stop_time);
+        self.earliest_time = EarliestTime::at_event(start_time);
         self.is_stale = true;
         Ok(())
     }
@@ -132,7 +140,7 @@ impl Instance {
         let duration = self.communication.duration(point, step_size)?;
         self.unit.advance(duration, &mut self.logger)?;
         self.needs_evaluation = false;
-        self.communication.advance(point, step_size);
+        self.communication.move_to(point + step_size);
         self.unit.values_mut()[TIME] = self.communication.now();
         Ok(())
     }
@@ -145,91 +153,34 @@ impl Instance {
 
     /// Back to the state right after instantiation.
     pub(super) fn reset(&mut self) -> Result<(), CallError> {
-        self.unit = self.template.boxed_clone();
-        self.phase = Phase::Instantiated;
-        self.start_time = 0.0;
-        self.communication = CommunicationPoint::new(0.0);
-        self.is_stale = true;
-        self.clocks = ClockStates::default();
-        self.needs_evaluation = false;
+        self.restart()?;
         self.note(format_args!("reset"));
         Ok(())
     }
 
-    /// Whether the instance can get into `phase`.
-    pub(super) fn reaches(&self, phase: Phase) -> bool {
-        self.interface.reaches(phase)
-    }
-
     /// What a saved state has to tell besides the unit.
     pub(super) fn life(&self) -> Life {
-        let Self { phase, communication, start_time, is_stale, needs_evaluation, clocks, .. } = *self;
-        Life { phase, communication, start_time, is_stale, needs_evaluation, clocks }
+        let Self {
+            phase, communication, earliest_time, start_time, is_stale, needs_evaluation, clocks, ..
+        } = *self;
+        Life { phase, communication, earliest_time, start_time, is_stale, needs_evaluation, clocks }
     }
 
     /// Goes on from a saved state; the unit has been restored.
     pub(super) fn resume(&mut self, life: Life) {
-        let Life { phase, communication, start_time, is_stale, needs_evaluation, clocks } = life;
+        let Life { phase, communication, earliest_time, start_time, is_stale, needs_evaluation, clocks } =
+            life;
         self.phase = phase;
         self.communication = communication;
+        self.earliest_time = earliest_time;
         self.start_time = start_time;
         self.is_stale = is_stale;
         self.needs_evaluation = needs_evaluation;
         self.clocks = clocks;
+        self.step = None;
     }
 
     pub(super) fn note(&mut self, message: fmt::Arguments<'_>) {
         self.logger.note(Topic::Events, message);
-    }
-}
-
-/// Makes an instance of the unit whose token is `token`, with the start values in it, for an interface type, or logs why
-/// not. `interface` is the name of what was asked for if no unit offers it.
-pub(super) fn instantiate(
-    function: &str,
-    name: Option<&CStr>,
-    token: Option<&CStr>,
-    callback: Callback,
-    logging_on: bool,
-    interface: Result<Interface, &str>,
-) -> Option<Instance> {
-    let logger = Logger::new(callback, name.unwrap_or_default().into(), logging_on);
-    let interface = match interface {
-        Ok(interface) => interface,
-        Err(asked) => {
-            logger.error(format_args!("{function}: {asked} is not offered"));
-            return None;
-        }
-    };
-    let token = token.unwrap_or_default().to_str().unwrap_or_default();
-    let (unit, start_values) = match read_token(token) {
-        Ok(found) => found,
-        Err(error) => {
-            logger.error(format_args!("{function}: {error}"));
-            return None;
-        }
-    };
-    if !interface.is_offered_by(unit.description) {
-        let (name, asked) = (unit.description.name, interface.name());
-        let offered = Offered(unit.description);
-        logger.error(format_args!("{function}: {name} does not offer {asked}, only {offered}"));
-        return None;
-    }
-    let mut made = (unit.create)();
-    start_values.apply(&mut *made);
-    let mut instance = Instance::new(made, interface, logger);
-    instance.note(format_args!("{} instantiated", unit.description.name));
-    Some(instance)
-}
-
-/// The interface types of a unit, for an error message.
-struct Offered(&'static Description);
-
-impl fmt::Display for Offered {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let offered = Interface::ALL.iter().filter(|interface| interface.is_offered_by(self.0));
-        offered.enumerate().try_for_each(|(index, interface)| {
-            write!(formatter, "{}{}", if index == 0 { "" } else { ", " }, interface.name())
-        })
     }
 }

@@ -3,10 +3,13 @@
 //! At the callback the tick is due and not yet run: the importer may set the continuous inputs as of that time, which
 //! the tick then reads, or end the step there. The first tick of a step that starts at it needs no callback, its inputs
 //! were just set. Plants make no steps of their own within a communication step and call nobody.
+//!
+//! A callback that does not come back, ended by an exception or a jump, leaves the step where it is: the importer frees or
+//! resets the instance, or restores a state from before.
 
 use super::fmi3::types::{fmi3InstanceEnvironment, fmi3IntermediateUpdateCallback};
 use super::ticking::{StepEnd, sampled};
-use super::{CallError, CommunicationPoint, Instance, Interface, Phase};
+use super::{CallError, Instance, Interface, Phase};
 use crate::unit::TIME;
 use crate::unit::sample_clock::SampleClock;
 use crate::unit::sampled::LARGEST_NUMBER_OF_TICKS;
@@ -18,6 +21,31 @@ pub(super) struct IntermediateUpdate {
     pub environment: fmi3InstanceEnvironment,
     /// The importer lets steps end early.
     pub may_return_early: bool,
+    /// What it may set.
+    pub registered: RegisteredVariables,
+}
+
+/// Variables that the importer named as `requiredIntermediateVariables`, by value reference.
+#[derive(Clone, Copy, Default)]
+pub(super) struct RegisteredVariables(u128);
+
+impl RegisteredVariables {
+    /// The references that stand for a row of a table with `row_count` rows; the first that does not is an error.
+    pub fn new(references: &[u32], row_count: usize) -> Result<Self, CallError> {
+        let largest = row_count.min(u128::BITS as usize) - 1;
+        let mut rows = 0;
+        for &reference in references {
+            if reference as usize > largest {
+                return Err(CallError::UnknownReference { reference, largest });
+            }
+            rows |= 1 << reference;
+        }
+        Ok(Self(rows))
+    }
+
+    pub fn contains(self, reference: u32) -> bool {
+        1u128.checked_shl(reference).is_some_and(|row| self.0 & row != 0)
+    }
 }
 
 /// A step with callbacks; times in s.
@@ -116,8 +144,28 @@ impl Instance {
             None => clock.pass(step.rest),
         }
         let is_event = matches!(self.interface, Interface::CoSimulationWithEvents { .. }) && clock.is_due();
-        self.communication = CommunicationPoint::new(step.end);
+        self.communication.move_to(step.end);
         self.unit.values_mut()[TIME] = step.end;
         Ok(Progress::Done(StepEnd { is_event, is_early: step.final_clock.is_none() }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::unit::UNITS;
+
+    #[test]
+    fn every_row_can_be_registered() {
+        for unit in UNITS {
+            let count = unit.description.variables.len();
+            let all: Vec<u32> = (0..count as u32).collect();
+            let registered = RegisteredVariables::new(&all, count).unwrap();
+            assert!(all.iter().all(|reference| registered.contains(*reference)), "{}", unit.description.name);
+            assert!(!registered.contains(count as u32) && !registered.contains(u32::MAX));
+            let refused = CallError::UnknownReference { reference: count as u32, largest: count - 1 };
+            assert_eq!(RegisteredVariables::new(&[count as u32], count).err(), Some(refused));
+        }
+        assert!(!RegisteredVariables::default().contains(0));
     }
 }

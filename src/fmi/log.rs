@@ -1,12 +1,13 @@
-//! Messages to the importer, through its callback only, formatted without the heap.
+//! What is said to the importer, and how: through its callback only, in the categories it enabled.
 
 use core::ffi::{CStr, c_char};
-use core::fmt::{self, Write};
-use std::ffi::CString;
+use core::fmt;
 
 use super::fmi2::types::{fmi2CallbackLogger, fmi2ComponentEnvironment};
 use super::fmi3::types::{fmi3InstanceEnvironment, fmi3LogMessageCallback};
+use super::message::{Message, Outbox};
 use super::{CallError, Status};
+use crate::unit::memory::{OutOfMemory, try_vector};
 use crate::unit::{Journal, Topic};
 
 /// Declared log categories: name in the model description and description.
@@ -74,18 +75,74 @@ pub enum Callback {
     Fmi3(fmi3LogMessageCallback, fmi3InstanceEnvironment),
 }
 
-/// Sends messages of enabled categories to the importer.
+impl Callback {
+    /// A message as this importer reads it: that of FMI 2.0 is a format of `printf`.
+    fn message(self, status: Status, category: usize, arguments: fmt::Arguments<'_>) -> Message {
+        Message::new(status, category, self.takes_formats(), arguments)
+    }
+
+    fn takes_formats(self) -> bool {
+        matches!(self, Self::Fmi2(..))
+    }
+
+    /// Why there is no instance.
+    #[cold]
+    pub(super) fn refusal(self, status: Status, arguments: fmt::Arguments<'_>) -> Message {
+        self.message(status, category_of_refusal(status), arguments)
+    }
+
+    /// A remark about the life of an instance.
+    pub(super) fn event(self, arguments: fmt::Arguments<'_>) -> Message {
+        self.message(Status::Ok, EVENTS, arguments)
+    }
+
+    /// Calls the importer. It need not come back: an exception or a jump may end this call and those below it, so no
+    /// reference to an instance and nothing that is yet to be dropped may be alive here or in any caller.
+    ///
+    /// # Safety
+    /// The callback may be called and understands its environment; `instance_name` is a C string.
+    pub(super) unsafe fn send(self, instance_name: *const c_char, message: &Message) {
+        let (status, text) = (message.status as i32, message.as_ptr());
+        let category = LOG_CATEGORIES[message.category].0.as_ptr();
+        // SAFETY: the caller's promise; all strings end with NUL and outlive the call; the format has no conversions,
+        // since % is doubled.
+        unsafe {
+            match self {
+                Self::None => {}
+                Self::Fmi2(callback, environment) => {
+                    callback(environment, instance_name, status, category, text)
+                }
+                Self::Fmi3(callback, environment) => callback(environment, status, category, text),
+            }
+        }
+    }
+}
+
+/// Collects messages of enabled categories for the importer, who gets them when the call is done
+/// ([`super::boundary::enter`]).
 ///
 /// Both standards let errors through even when debug logging is off.
 pub struct Logger {
-    callback: Callback,
-    instance_name: CString,
+    pub(super) callback: Callback,
+    /// As a C string.
+    instance_name: Vec<u8>,
     enabled: [bool; LOG_CATEGORIES.len()],
+    pub(super) outbox: Outbox,
 }
 
 impl Logger {
-    pub fn new(callback: Callback, instance_name: CString, logging_on: bool) -> Self {
-        Self { callback, instance_name, enabled: [logging_on; LOG_CATEGORIES.len()] }
+    pub fn new(callback: Callback, instance_name: &CStr, logging_on: bool) -> Result<Self, OutOfMemory> {
+        let name = instance_name.to_bytes_with_nul();
+        let mut own_name = try_vector("the instance's name", name.len())?;
+        own_name.extend_from_slice(name);
+        let outbox = if matches!(callback, Callback::None) { Outbox::default() } else { Outbox::new()? };
+        let enabled = [logging_on; LOG_CATEGORIES.len()];
+        Ok(Self { callback, instance_name: own_name, enabled, outbox })
+    }
+
+    /// Name that the importer gave the instance.
+    pub(super) fn instance_name(&self) -> *const c_char {
+        self.instance_name.as_ptr().cast()
     }
 
     /// Number of a category by name.
@@ -93,46 +150,15 @@ impl Logger {
         LOG_CATEGORIES.iter().position(|(known, _)| *known == name)
     }
 
-    /// A call was refused with [`Status::Error`].
-    pub(super) fn error(&self, message: fmt::Arguments<'_>) {
-        self.refusal(Status::Error, message);
-    }
-
-    /// A call was refused.
+    /// A call was refused, or the instance is lost.
     #[cold]
-    pub(super) fn refusal(&self, status: Status, message: fmt::Arguments<'_>) {
-        self.send(status, ERROR, message);
+    pub(super) fn refusal(&mut self, status: Status, message: fmt::Arguments<'_>) {
+        self.push(status, category_of_refusal(status), message);
     }
 
-    /// The instance is lost.
-    #[cold]
-    pub(super) fn fatal(&self, message: fmt::Arguments<'_>) {
-        self.send(Status::Fatal, FATAL, message);
-    }
-
-    fn send(&self, status: Status, category: usize, message: fmt::Arguments<'_>) {
-        let category = LOG_CATEGORIES[category].0.as_ptr();
-        match self.callback {
-            Callback::None => {}
-            Callback::Fmi2(callback, environment) => {
-                let text = Message::new(message, true);
-                // SAFETY: the importer vouches for its callback and environment as long as the instance lives; all
-                // strings end with NUL and outlive the call; the format has no conversions, since % is doubled.
-                unsafe {
-                    callback(
-                        environment,
-                        self.instance_name.as_ptr(),
-                        status as i32,
-                        category,
-                        text.as_ptr(),
-                    );
-                }
-            }
-            Callback::Fmi3(callback, environment) => {
-                let text = Message::new(message, false);
-                // SAFETY: as above.
-                unsafe { callback(environment, status as i32, category, text.as_ptr()) }
-            }
+    fn push(&mut self, status: Status, category: usize, message: fmt::Arguments<'_>) {
+        if !matches!(self.callback, Callback::None) {
+            self.outbox.push(status, category, self.callback.takes_formats(), message);
         }
     }
 }
@@ -144,7 +170,7 @@ impl Journal for Logger {
 
     fn note(&mut self, topic: Topic, message: fmt::Arguments<'_>) {
         if self.wants(topic) {
-            self.send(Status::Ok, category_of(topic), message);
+            self.push(Status::Ok, category_of(topic), message);
         }
     }
 }
@@ -156,51 +182,8 @@ fn category_of(topic: Topic) -> usize {
     }
 }
 
-/// Longest message in bytes, the final NUL included; the rest is cut off.
-const CAPACITY: usize = 1024;
-
-/// C string on the stack.
-struct Message {
-    text: [u8; CAPACITY],
-    length: usize,
-    double_percent: bool,
-}
-
-impl Message {
-    fn new(arguments: fmt::Arguments<'_>, double_percent: bool) -> Self {
-        let mut message = Self { text: [0; CAPACITY], length: 0, double_percent };
-        // Fails only when the text is cut off, which is what we want then.
-        let _ = message.write_fmt(arguments);
-        message
-    }
-
-    fn as_ptr(&self) -> *const c_char {
-        self.text.as_ptr().cast()
-    }
-
-    fn push(&mut self, bytes: &[u8]) -> fmt::Result {
-        let end = self.length + bytes.len();
-        // The last byte stays NUL.
-        if end >= CAPACITY {
-            return Err(fmt::Error);
-        }
-        self.text[self.length..end].copy_from_slice(bytes);
-        self.length = end;
-        Ok(())
-    }
-}
-
-impl Write for Message {
-    fn write_str(&mut self, text: &str) -> fmt::Result {
-        let mut encoded = [0; 4];
-        text.chars().try_for_each(|character| match character {
-            // #4# stands for the variable with the value reference 4.
-            '#' => self.push(b"##"),
-            '%' if self.double_percent => self.push(b"%%"),
-            '\0' => self.push(b"?"),
-            _ => self.push(character.encode_utf8(&mut encoded).as_bytes()),
-        })
-    }
+fn category_of_refusal(status: Status) -> usize {
+    if status == Status::Fatal { FATAL } else { ERROR }
 }
 
 /// Switches categories by name, or all of them when there is no name. An unknown name changes nothing.
@@ -232,34 +215,4 @@ pub(super) unsafe fn set_debug_logging(
 pub(super) unsafe fn c_string<'a>(pointer: *const c_char) -> Option<&'a CStr> {
     // SAFETY: not null here; the rest is the caller's promise.
     (!pointer.is_null()).then(|| unsafe { CStr::from_ptr(pointer) })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn text(arguments: fmt::Arguments<'_>, double_percent: bool) -> String {
-        let message = Message::new(arguments, double_percent);
-        CStr::from_bytes_until_nul(&message.text).unwrap().to_str().unwrap().to_owned()
-    }
-
-    #[test]
-    fn percent_signs_cannot_become_conversions() {
-        assert_eq!(text(format_args!("100 %s"), true), "100 %%s");
-        assert_eq!(text(format_args!("100 %s"), false), "100 %s");
-    }
-
-    #[test]
-    fn number_signs_cannot_become_references() {
-        assert_eq!(text(format_args!("#1#"), true), "##1##");
-        assert_eq!(text(format_args!("#1#"), false), "##1##");
-    }
-
-    #[test]
-    fn long_messages_are_cut_at_a_character() {
-        let long = "ü".repeat(CAPACITY);
-        let cut = text(format_args!("{long}"), false);
-        assert_eq!(cut.len(), CAPACITY - 2);
-        assert!(cut.chars().all(|character| character == 'ü'));
-    }
 }

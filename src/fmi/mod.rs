@@ -1,7 +1,8 @@
 //! The C boundary: FMI 2.0 and FMI 3.0 in one shared library.
 //!
-//! Every exported function reads the same: enter the boundary (null, phase, panic), convert the arguments, act on
-//! the [`Instance`], map the error to a status and a log message. All `unsafe` of the library lives here.
+//! Every exported function reads the same: enter the boundary (null, phase, panic, floating-point environment), convert
+//! the arguments, act on the [`Instance`], map the error to a status and a log message. All `unsafe` of the library lives
+//! here.
 
 mod access;
 mod boundary;
@@ -9,13 +10,16 @@ mod communication;
 mod derivatives;
 mod error;
 mod event_mode;
+mod floating_point;
 pub mod fmi2;
 pub mod fmi3;
 mod fraction;
 mod instance;
+mod instantiation;
 mod interface;
 mod intermediate_update;
 mod log;
+mod message;
 mod model_exchange;
 mod phase;
 mod saved_state;

@@ -1,9 +1,45 @@
 //! Model exchange: the importer integrates the states, the instance evaluates derivatives and event indicators.
 
-use super::{CallError, CommunicationPoint, Instance, Interface, Phase};
+use serde::{Deserialize, Serialize};
+
+use super::{CallError, Instance, Interface, Phase};
 use crate::unit::continuous::nominal;
 use crate::unit::value::ValueError;
 use crate::unit::{ContinuousUnit, TIME};
+
+/// How far time may go back: not beyond the last event, nor beyond the completed step before the last one (FMI 2.0.5,
+/// section 3.2.2; FMI 3.0.2, section 3.2.1). Within that a solver may look at an earlier time again.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct EarliestTime {
+    /// \[s\]
+    time: f64,
+    /// Time of the last completed step or, after it, of the last event \[s\].
+    last_completed: f64,
+}
+
+impl EarliestTime {
+    /// Right after an event at `time` \[s\]; initialisation counts as one.
+    pub fn at_event(time: f64) -> Self {
+        Self { time, last_completed: time }
+    }
+
+    fn completed_step(&mut self, time: f64) {
+        *self = Self { time: self.last_completed, last_completed: time };
+    }
+
+    pub fn is_finite(&self) -> bool {
+        self.time.is_finite() && self.last_completed.is_finite()
+    }
+
+    fn check(&self, time: f64) -> Result<(), CallError> {
+        /// Rounding of importers, in units in the last place.
+        const ROUNDING: f64 = 16.0 * f64::EPSILON;
+        if time >= self.time - ROUNDING * self.time.abs() {
+            return Ok(());
+        }
+        Err(CallError::TimeGoesBack { got: time, earliest: self.time })
+    }
+}
 
 impl Instance {
     /// Refuses functions that belong to model exchange alone on instances that were made for something else.
@@ -23,10 +59,12 @@ impl Instance {
     /// Readings are taken with the inputs that the importer set last, the left limit at the event.
     pub(super) fn enter_event_of_integration(&mut self) -> Result<(), CallError> {
         let comes_from_continuous_time = self.phase == Phase::ContinuousTimeMode;
+        let now = self.communication.now();
         let unit = self.exchanged()?;
         if comes_from_continuous_time {
             unit.enter_event();
         }
+        self.earliest_time = EarliestTime::at_event(now);
         Ok(())
     }
 
@@ -43,15 +81,28 @@ impl Instance {
         Ok(())
     }
 
-    /// Nothing depends on time but through the inputs, so any finite time will do.
+    /// The solver accepts where it is. No unit has step events.
+    pub(super) fn complete_integrator_step(&mut self) -> Result<(), CallError> {
+        self.require_model_exchange()?;
+        self.earliest_time.completed_step(self.communication.now());
+        Ok(())
+    }
+
+    /// Nothing depends on time but through the inputs.
     pub(super) fn set_time(&mut self, time: f64) -> Result<(), CallError> {
         self.require_model_exchange()?;
         if !time.is_finite() {
             let expected = "a finite time";
             return Err(CallError::WrongTime { argument: "time", value: time, expected });
         }
+        self.earliest_time.check(time)?;
+        self.communication.require_before_stop_time(
+            "time",
+            time,
+            (time - self.communication.now()).max(0.0),
+        )?;
         self.unit.values_mut()[TIME] = time;
-        self.communication = CommunicationPoint::new(time);
+        self.communication.move_to(time);
         Ok(())
     }
 

@@ -15,8 +15,10 @@
 //! 58  n   payload
 //! ```
 
+use super::model_exchange::EarliestTime;
 use super::ticking::ClockStates;
-use super::{CommunicationPoint, Instance, Phase};
+use super::{CommunicationPoint, Instance, Interface, Phase};
+use crate::unit::memory::OutOfMemory;
 use crate::unit::persistence::PersistenceError;
 use crate::unit::{Description, UNITS};
 use core::fmt;
@@ -25,7 +27,7 @@ use thiserror::Error;
 
 const MARK: [u8; 8] = *b"maglevFS";
 /// To be raised whenever a unit's fields or [`Life`] change.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 const TOKEN: core::ops::Range<usize> = 16..54;
 const CHECKSUM: core::ops::Range<usize> = 54..58;
@@ -58,12 +60,16 @@ pub enum StateError {
     Life,
     #[error("a state in the phase \"{got}\", which this instance never reaches")]
     OtherPhase { got: &'static str },
-    #[error("a state at t = {now} s with start time {start_time} s: expected finite times")]
+    #[error(
+        "a state at t = {now} s with start time {start_time} s: expected finite times, none past the stop time"
+    )]
     Times { now: f64, start_time: f64 },
     #[error("a state before the first step in the phase \"{0}\"")]
     Stale(&'static str),
     #[error(transparent)]
     Unit(#[from] PersistenceError),
+    #[error(transparent)]
+    OutOfMemory(#[from] OutOfMemory),
 }
 
 /// A token as read from bytes, displayed as the name of its unit where it has one.
@@ -86,6 +92,7 @@ impl fmt::Display for TokenName {
 pub(super) struct Life {
     pub phase: Phase,
     pub communication: CommunicationPoint,
+    pub earliest_time: EarliestTime,
     pub start_time: f64,
     /// See [`Instance`].
     pub is_stale: bool,
@@ -102,7 +109,7 @@ impl Life {
         if !reaches(phase) {
             return Err(StateError::OtherPhase { got: phase.name() });
         }
-        if !(now.is_finite() && start_time.is_finite()) {
+        if !(self.communication.is_possible_after(start_time) && self.earliest_time.is_finite()) {
             return Err(StateError::Times { now, start_time });
         }
         if self.is_stale && !matches!(phase, Phase::Instantiated | Phase::InitializationMode) {
@@ -199,6 +206,20 @@ impl SavedState {
     }
 }
 
+impl SavedState {
+    /// The life and the bytes of the unit, for an instance of `unit` that was made for `interface`.
+    fn read(&self, unit: &'static Description, interface: Interface) -> Result<(Life, &[u8]), StateError> {
+        if !core::ptr::eq(self.unit, unit) {
+            let mut token = [0; TOKEN.end - TOKEN.start];
+            token.copy_from_slice(self.unit.token().as_str().as_bytes());
+            return Err(StateError::OtherUnit { got: TokenName(token), expected: unit.name });
+        }
+        let (life, unit) = postcard::take_from_bytes::<Life>(self.payload()).map_err(|_| StateError::Life)?;
+        life.check(|phase| interface.reaches(phase))?;
+        Ok((life, unit))
+    }
+}
+
 /// CRC-32 of the header, without the place of the checksum itself, and of the payload: finds every damage to up to
 /// 32 bits in a row, and any other but for one in 4e9.
 fn checksum(header: &[u8], payload: &[u8]) -> u32 {
@@ -223,7 +244,15 @@ impl Instance {
     }
 
     pub(super) fn restore(&mut self, state: &SavedState) -> Result<(), StateError> {
-        let (life, unit) = self.read(state)?;
+        let (life, unit) = state.read(self.unit.description(), self.interface)?;
+        self.unit.restore(unit, !life.is_stale)?;
+        self.resume(life);
+        Ok(())
+    }
+
+    /// As [`Instance::restore`], from the state in which the instance was made.
+    pub(super) fn restart(&mut self) -> Result<(), StateError> {
+        let (life, unit) = self.start.read(self.unit.description(), self.interface)?;
         self.unit.restore(unit, !life.is_stale)?;
         self.resume(life);
         Ok(())
@@ -231,21 +260,7 @@ impl Instance {
 
     /// Whether [`Instance::restore`] would work.
     pub(super) fn verify(&self, state: &SavedState) -> Result<(), StateError> {
-        let (life, unit) = self.read(state)?;
+        let (life, unit) = state.read(self.unit.description(), self.interface)?;
         Ok(self.unit.verify(unit, !life.is_stale)?)
-    }
-
-    /// The life and the bytes of the unit.
-    fn read<'a>(&self, state: &'a SavedState) -> Result<(Life, &'a [u8]), StateError> {
-        let unit = self.unit.description();
-        if !core::ptr::eq(state.unit, unit) {
-            let mut token = [0; TOKEN.end - TOKEN.start];
-            token.copy_from_slice(state.unit.token().as_str().as_bytes());
-            return Err(StateError::OtherUnit { got: TokenName(token), expected: unit.name });
-        }
-        let (life, unit) =
-            postcard::take_from_bytes::<Life>(state.payload()).map_err(|_| StateError::Life)?;
-        life.check(|phase| self.reaches(phase))?;
-        Ok((life, unit))
     }
 }

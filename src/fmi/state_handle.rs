@@ -3,6 +3,7 @@
 use core::ffi::c_void;
 
 use super::{CallError, Instance, SavedState, StateError};
+use crate::unit::memory::try_boxed;
 
 /// The state behind a handle.
 ///
@@ -25,9 +26,9 @@ pub(super) unsafe fn get_state(instance: &mut Instance, target: *mut *mut c_void
         // SAFETY: the caller's promise.
         return Ok(instance.save(unsafe { &mut *living(*target)? })?);
     }
-    let mut state = Box::new(SavedState::new(instance.unit.description()));
+    let mut state = SavedState::new(instance.unit.description());
     instance.save(&mut state)?;
-    *target = Box::into_raw(state).cast();
+    *target = on_the_heap(state)?;
     Ok(())
 }
 
@@ -45,12 +46,17 @@ pub(super) unsafe fn deserialise_state(
     let state = SavedState::deserialise(bytes, instance.unit.description())?;
     instance.verify(&state)?;
     if target.is_null() {
-        *target = Box::into_raw(Box::new(state)).cast();
+        *target = on_the_heap(state)?;
     } else {
         // SAFETY: the caller's promise.
         unsafe { *living(*target)? = state };
     }
     Ok(())
+}
+
+/// A handle of `state`, freed by [`free_state`].
+fn on_the_heap(state: SavedState) -> Result<*mut c_void, StateError> {
+    Ok(Box::into_raw(try_boxed("a saved state", state)?).cast())
 }
 
 /// Frees a state; null is ignored.
@@ -62,7 +68,7 @@ pub(super) unsafe fn free_state(target: *mut *mut c_void) -> Result<(), CallErro
     let Some(target) = (unsafe { target.as_mut() }).filter(|target| !target.is_null()) else {
         return Ok(());
     };
-    // SAFETY: the caller's promise; made by `Box::into_raw` above, freed once.
+    // SAFETY: the caller's promise; made by [`on_the_heap`], freed once.
     unsafe {
         let state = living(*target)?;
         (*state).invalidate();

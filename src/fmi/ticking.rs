@@ -1,25 +1,40 @@
 //! Who makes a sampled unit tick: the unit within its steps, the importer at events, or a scheduler ([`Interface`]).
 //!
 //! All three run the same ticks with the same inputs. Without events a tick at t reads the inputs that were set before
-//! the step that starts at or before t. With events a step ends at the tick; the importer enters event mode, sets the
-//! inputs, and `fmi3UpdateDiscreteStates` runs the tick. It then asks for another event iteration, in which the new
-//! outputs can be read and the clock `ticked` is active. The outputs thus follow from the state alone and never, at
-//! one instant, from the inputs: a loop through a plant is no algebraic loop.
+//! the step that starts at or before t. With events a step ends at the tick and the importer enters event mode. There
+//! it is the importer who activates the clock `tick` (FMI 3.0.2, section 2.2.9): after `fmi3SetClock` the
+//! `fmi3UpdateDiscreteStates` that follows runs the tick with the inputs of that moment, however many event iterations
+//! went before, and asks for another one, in which the new outputs can be read. An importer that knows no clocks gets a
+//! tick that is still due when it leaves event mode. The outputs follow from the state alone and never, at one instant,
+//! from the inputs: a loop through a plant is no algebraic loop. The clock `ticked` is active while `tick` is.
 
-use super::{CallError, CommunicationPoint, Instance, Interface, Phase};
-use crate::unit::sampled::{CLOCKS, TICK, TICKED};
+use super::fraction::time_from;
+use super::{CallError, Instance, Interface, Phase};
+use crate::unit::sampled::{CLOCKS, SAMPLE_TIME, TICK, TICKED};
 use crate::unit::{SampledUnit, TIME, Unit};
 use serde::{Deserialize, Serialize};
 
 /// Clocks at one instant.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct ClockStates {
-    /// The importer has activated `tick`.
-    pub is_tick_set: bool,
-    /// `ticked` is active.
-    pub has_ticked: bool,
+    /// The importer has activated `tick` in this event iteration.
+    pub is_tick_active: bool,
+    /// A scheduled activation is yet to be told through `ticked`.
+    pub is_activation_untold: bool,
     /// A model partition was activated before.
     pub was_activated: bool,
+    /// Interval \[s\] of `tick` that the importer was told last, 0 if none.
+    pub told_interval: f64,
+}
+
+/// When the clock `tick` ticks.
+pub(super) struct Timing {
+    /// \[s\]
+    pub interval: f64,
+    /// Time from the start to the first tick \[s\].
+    pub shift: f64,
+    /// `shift` as a fraction of seconds, if 64 bits suffice.
+    pub shift_fraction: Option<(u64, u64)>,
 }
 
 /// What an importer learns from a step.
@@ -46,12 +61,12 @@ impl Instance {
                 clock.pass(wait);
                 // The importer's time may be off by rounding; a step never goes back nor beyond its end.
                 let reached = clock.next_time().max(point).min(point + step_size);
-                self.communication = CommunicationPoint::new(if wait > 0.0 { reached } else { point });
+                self.communication.move_to(if wait > 0.0 { reached } else { point });
                 is_early = self.communication.now() < point + step_size;
             }
             _ => {
                 self.unit.advance(duration, &mut self.logger)?;
-                self.communication.advance(point, step_size);
+                self.communication.move_to(point + step_size);
             }
         }
         self.unit.values_mut()[TIME] = self.communication.now();
@@ -68,12 +83,13 @@ impl Instance {
             return Err(CallError::ActivationTime { got: time, last: now });
         }
         let unit = sampled(&mut *self.unit)?;
+        self.communication.require_before_stop_time("activationTime", time, unit.clock().period())?;
         let tick_time = unit.clock_mut().take_at(time);
         unit.tick(tick_time, &mut self.logger);
-        self.communication = CommunicationPoint::new(time);
+        self.communication.move_to(time);
         self.unit.values_mut()[TIME] = time;
         self.clocks.was_activated = true;
-        self.clocks.has_ticked = true;
+        self.clocks.is_activation_untold = true;
         Ok(())
     }
 
@@ -84,7 +100,7 @@ impl Instance {
 
     /// Back from the importer, who may have asked for `ticked` or not.
     pub(super) fn leave_clock_update_mode(&mut self) {
-        self.clocks.has_ticked = false;
+        self.clocks.is_activation_untold = false;
         self.phase = Phase::ClockActivationMode;
     }
 
@@ -103,56 +119,78 @@ impl Instance {
         CallError::NotSettable { name: CLOCKS[TICKED].name, why, phase: self.phase.name() }
     }
 
-    /// Activation states. In scheduled execution `ticked` tells of each tick once.
+    /// Activation states. In scheduled execution `ticked` tells of each activation once.
     pub(super) fn get_clocks(&mut self, references: &[u32], values: &mut [u8]) -> Result<(), CallError> {
         for reference in references {
             self.find_clock(*reference)?;
         }
         for (value, reference) in values.iter_mut().zip(references) {
-            *value = match self.find_clock(*reference)? {
-                TICK => self.clocks.is_tick_set.into(),
-                _ => self.clocks.has_ticked.into(),
-            };
-        }
-        if self.interface == Interface::ScheduledExecution && !references.is_empty() {
-            self.clocks.has_ticked = false;
+            let is_untold = self.find_clock(*reference)? == TICKED
+                && core::mem::take(&mut self.clocks.is_activation_untold);
+            *value = (self.clocks.is_tick_active || is_untold).into();
         }
         Ok(())
     }
 
-    /// Activates `tick` where a tick is due, which happens then in any case: an importer that knows nothing of clocks
-    /// gets the same ticks. A tick that has been run at this instant stays run.
+    /// Activates `tick` where a tick is due; [`Instance::update_discrete_states`] runs and deactivates it.
     pub(super) fn set_clocks(&mut self, references: &[u32], values: &[u8]) -> Result<(), CallError> {
-        let has_ticked = self.clocks.has_ticked;
-        let mut is_tick_set = self.clocks.is_tick_set;
+        let mut is_tick_active = self.clocks.is_tick_active;
         for (reference, value) in references.iter().zip(values) {
             if self.find_clock(*reference)? != TICK {
                 return Err(self.no_input_clock());
             }
             let now = self.communication.now();
-            let unit = sampled(&mut *self.unit)?;
-            match (*value != 0, unit.clock().is_due() || has_ticked) {
-                (true, true) => is_tick_set = true,
+            let clock = sampled(&mut *self.unit)?.clock();
+            match (*value != 0, clock.is_due()) {
+                (true, true) => is_tick_active = true,
                 (true, false) => {
-                    return Err(CallError::NoTick { now, next: unit.clock().next_time() });
+                    let (next, period) = (clock.next_time(), clock.period());
+                    return Err(CallError::NoTick { now, next, period });
                 }
-                (false, _) if is_tick_set => return Err(CallError::ClockStaysActive),
+                (false, _) if is_tick_active => return Err(CallError::ClockStaysActive),
                 (false, _) => {}
             }
         }
-        self.clocks.is_tick_set = is_tick_set;
+        self.clocks.is_tick_active = is_tick_active;
         Ok(())
     }
 
-    /// Interval \[s\] of an input clock, and the time from the start to its first tick \[s\].
-    pub(super) fn interval_and_shift(&mut self, reference: u32) -> Result<(f64, f64), CallError> {
+    /// When an input clock ticks.
+    pub(super) fn timing(&mut self, reference: u32) -> Result<Timing, CallError> {
         if self.find_clock(reference)? != TICK {
             return Err(self.no_input_clock());
         }
         self.refresh_before_first_step()?;
         let start_time = self.start_time;
         let clock = sampled(&mut *self.unit)?.clock();
-        Ok((clock.period(), (clock.next_time() - start_time).max(0.0)))
+        let interval = clock.period();
+        let shift_fraction = time_from(start_time, clock.next_number(), interval);
+        let shift = match shift_fraction {
+            Some((counter, resolution)) => counter as f64 / resolution as f64,
+            None => (clock.next_time() - start_time).max(0.0),
+        };
+        Ok(Timing { interval, shift, shift_fraction })
+    }
+
+    /// Lets the clock tick in intervals of so many seconds, by the parameter that says so.
+    pub(super) fn set_intervals(
+        &mut self,
+        references: &[u32],
+        intervals: impl Iterator<Item = f64> + Clone,
+    ) -> Result<(), CallError> {
+        // A unit without clocks has no reference that passes.
+        let sample_time = self.unit.description().find(SAMPLE_TIME);
+        for (reference, interval) in references.iter().zip(intervals.clone()) {
+            if self.find_clock(*reference)? != TICK {
+                return Err(self.no_input_clock());
+            }
+            sample_time.map_or(Ok(()), |(_, variable)| variable.check(interval))?;
+        }
+        if let (Some((row, _)), Some(interval)) = (sample_time, intervals.last()) {
+            self.unit.values_mut()[row] = interval;
+            self.is_stale = true;
+        }
+        Ok(())
     }
 }
 

@@ -13,6 +13,7 @@ mod maglev_rig_plant;
 mod magnetic_bearing;
 mod magnetic_bearing_controller;
 mod magnetic_bearing_plant;
+pub mod memory;
 pub mod persistence;
 pub mod quantity;
 pub mod sample_clock;
@@ -32,6 +33,7 @@ pub use maglev_rig_controller::MaglevRigController;
 pub use maglev_rig_plant::MaglevRigPlant;
 pub use magnetic_bearing_controller::MagneticBearingController;
 pub use magnetic_bearing_plant::MagneticBearingPlant;
+use memory::{OutOfMemory, try_boxed};
 pub use persistence::Persistent;
 pub use sampled::SampledUnit;
 pub use start_values::StartValues;
@@ -118,9 +120,6 @@ pub trait Unit: Persistent + Send {
     fn is_consistent(&self) -> bool {
         true
     }
-
-    /// Copy on the heap.
-    fn boxed_clone(&self) -> Box<dyn Unit>;
 }
 
 /// Value reference of the simulation time, the first row of every table.
@@ -131,31 +130,31 @@ pub const TIME: usize = 0;
 pub struct UnitType {
     pub description: &'static Description,
     pub create: fn() -> Box<dyn Unit>,
+    /// As `create`, for a library whose host goes on when memory runs out.
+    pub try_create: fn() -> Result<Box<dyn Unit>, OutOfMemory>,
 }
 
-pub static MAGNETIC_BEARING_PLANT: UnitType = UnitType {
-    description: &magnetic_bearing_plant::DESCRIPTION,
-    create: || Box::new(MagneticBearingPlant::new()),
-};
-pub static MAGNETIC_BEARING_CONTROLLER: UnitType = UnitType {
-    description: &magnetic_bearing_controller::DESCRIPTION,
-    create: || Box::new(MagneticBearingController::new()),
-};
-pub static LEVITATED_BALL_PLANT: UnitType = UnitType {
-    description: &levitated_ball_plant::DESCRIPTION,
-    create: || Box::new(LevitatedBallPlant::new()),
-};
-pub static LEVITATED_BALL_CONTROLLER: UnitType = UnitType {
-    description: &levitated_ball_controller::DESCRIPTION,
-    create: || Box::new(LevitatedBallController::new()),
-};
+impl UnitType {
+    const fn of<U: Unit + Default + 'static>(description: &'static Description) -> Self {
+        Self {
+            description,
+            create: || Box::new(U::default()),
+            try_create: || Ok(try_boxed("a unit", U::default())?),
+        }
+    }
+}
 
-pub static MAGLEV_RIG_PLANT: UnitType =
-    UnitType { description: &maglev_rig_plant::DESCRIPTION, create: || Box::new(MaglevRigPlant::new()) };
-pub static MAGLEV_RIG_CONTROLLER: UnitType = UnitType {
-    description: &maglev_rig_controller::DESCRIPTION,
-    create: || Box::new(MaglevRigController::new()),
-};
+pub static MAGNETIC_BEARING_PLANT: UnitType =
+    UnitType::of::<MagneticBearingPlant>(&magnetic_bearing_plant::DESCRIPTION);
+pub static MAGNETIC_BEARING_CONTROLLER: UnitType =
+    UnitType::of::<MagneticBearingController>(&magnetic_bearing_controller::DESCRIPTION);
+pub static LEVITATED_BALL_PLANT: UnitType =
+    UnitType::of::<LevitatedBallPlant>(&levitated_ball_plant::DESCRIPTION);
+pub static LEVITATED_BALL_CONTROLLER: UnitType =
+    UnitType::of::<LevitatedBallController>(&levitated_ball_controller::DESCRIPTION);
+pub static MAGLEV_RIG_PLANT: UnitType = UnitType::of::<MaglevRigPlant>(&maglev_rig_plant::DESCRIPTION);
+pub static MAGLEV_RIG_CONTROLLER: UnitType =
+    UnitType::of::<MaglevRigController>(&maglev_rig_controller::DESCRIPTION);
 
 /// All units the shared library offers.
 pub static UNITS: &[&UnitType] = &[

@@ -75,6 +75,11 @@ impl SampleClock {
         self.period
     }
 
+    /// Number k of the next tick.
+    pub fn next_number(&self) -> i64 {
+        self.next
+    }
+
     /// Time of the next tick \[s\].
     pub fn next_time(&self) -> f64 {
         self.time_of(self.next)

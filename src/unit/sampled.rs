@@ -41,6 +41,9 @@ pub static CLOCKS: [ClockVariable; 2] = [
     },
     ClockVariable { name: "ticked", description: "A tick has set the outputs anew", is_input: false },
 ];
+/// Name of the parameter of every sampled unit that is the interval of `tick`.
+pub const SAMPLE_TIME: &str = "sample_time";
+
 /// Places in [`CLOCKS`].
 pub const TICK: usize = 0;
 pub const TICKED: usize = 1;

@@ -16,6 +16,7 @@ use core::fmt::{self, Write};
 
 use thiserror::Error;
 
+use super::memory::{OutOfMemory, try_reserve};
 use super::value::ValueError;
 use super::variable::{Kind, Variable};
 use super::{Description, UNITS, Unit, UnitType};
@@ -31,21 +32,25 @@ pub struct StartValues {
 pub enum StartValueError {
     #[error("{unit} has no variable {name}")]
     UnknownVariable { unit: &'static str, name: String },
+    #[error("{unit} has no variable with the value reference {reference}")]
+    UnknownReference { unit: &'static str, reference: usize },
     #[error("{name} is calculated by {unit}: expected a parameter or an input")]
     Calculated { unit: &'static str, name: &'static str },
     #[error("{name} = {value}: expected {expected}")]
     NotWhole { name: &'static str, value: f64, expected: &'static str },
     #[error(transparent)]
     Value(#[from] ValueError),
+    #[error(transparent)]
+    OutOfMemory(#[from] OutOfMemory),
 }
 
-/// Why a token was refused.
+/// Why a token was refused; says so without the heap, which may be what is missing.
 #[derive(Clone, Debug, Error, PartialEq)]
-pub enum TokenError {
+pub enum TokenError<'a> {
     #[error("the token \"{0}\" is none of this library: {KnownTokens}")]
-    Unknown(String),
+    Unknown(&'a str),
     #[error("the token ends with \"{0}\": expected ;value reference=value")]
-    Malformed(String),
+    Malformed(&'a str),
     #[error(transparent)]
     StartValue(#[from] StartValueError),
 }
@@ -75,9 +80,9 @@ impl StartValues {
         value: f64,
     ) -> Result<(), StartValueError> {
         let unit = description.name;
-        let variable = description.variables.get(reference).ok_or_else(|| {
-            StartValueError::UnknownVariable { unit, name: format!("with the value reference {reference}") }
-        })?;
+        let Some(variable) = description.variables.get(reference) else {
+            return Err(StartValueError::UnknownReference { unit, reference });
+        };
         if variable.is_calculated() {
             return Err(StartValueError::Calculated { unit, name: variable.name });
         }
@@ -92,7 +97,10 @@ impl StartValues {
         variable.check(value)?;
         match self.values.binary_search_by_key(&reference, |(known, _)| *known) {
             Ok(place) => self.values[place].1 = value,
-            Err(place) => self.values.insert(place, (reference, value)),
+            Err(place) => {
+                try_reserve("start values", &mut self.values, 1)?;
+                self.values.insert(place, (reference, value));
+            }
         }
         Ok(())
     }
@@ -122,19 +130,20 @@ impl StartValues {
 }
 
 /// The unit that a token stands for and the start values in it.
-pub fn read_token(token: &str) -> Result<(&'static UnitType, StartValues), TokenError> {
+pub fn read_token(token: &str) -> Result<(&'static UnitType, StartValues), TokenError<'_>> {
     let mut parts = token.split(';');
     let base = parts.next().unwrap_or_default();
     let unit = UNITS
         .iter()
         .find(|unit| unit.description.token().as_str() == base)
-        .ok_or_else(|| TokenError::Unknown(token.to_owned()))?;
+        .ok_or(TokenError::Unknown(token))?;
     let mut values = StartValues::default();
     for part in parts {
-        let malformed = || TokenError::Malformed(part.to_owned());
-        let (reference, value) = part.split_once('=').ok_or_else(malformed)?;
-        let reference = reference.parse().map_err(|_| malformed())?;
-        let value = value.parse().map_err(|_| malformed())?;
+        let Some((Ok(reference), Ok(value))) =
+            part.split_once('=').map(|(reference, value)| (reference.parse(), value.parse()))
+        else {
+            return Err(TokenError::Malformed(part));
+        };
         values.set_by_reference(unit.description, reference, value)?;
     }
     Ok((unit, values))

@@ -64,7 +64,7 @@ thread_local! {
 }
 
 /// Counts, and asks for the end of the step.
-unsafe extern "C" fn stop(
+unsafe extern "C-unwind" fn stop(
     _: *mut c_void,
     time: f64,
     _: fmi3Boolean,
@@ -98,14 +98,18 @@ fn has_events(unit: &str) -> bool {
     is_made(co_simulation(unit, EVENTS, recorder.environment()))
 }
 
+/// Whether a tick is evaluated before the end of the event iteration; otherwise the call has to be ignored.
 fn evaluates_discrete_states(unit: &str) -> bool {
     if !has_events(unit) {
         return false;
     }
     let component = Component::co_simulation(unit, EVENTS);
     component.initialise(0.0);
+    assert_eq!(component.set_clock(component.clocks()[0], 1), OK);
+    let before = component.saved_bytes();
     // SAFETY: a live handle.
-    unsafe { fmi3EvaluateDiscreteStates(component.handle) == OK }
+    assert_eq!(unsafe { fmi3EvaluateDiscreteStates(component.handle) }, OK);
+    component.saved_bytes() != before
 }
 
 fn is_schedulable(unit: &str) -> bool {

@@ -3,6 +3,7 @@
 use core::ptr::null_mut;
 
 use maglev_fmu::fmi::fmi3::*;
+use maglev_fmu::unit::variable::Causality;
 
 use super::harness::clocked::{Choices, Step, Update, co_simulation, sampled_units};
 use super::harness::{CONTROLLER, Component, ERROR, OK, PLANT, Phase, Recorder, Standard};
@@ -45,9 +46,10 @@ fn steps_end_at_ticks() {
         assert_eq!(again, Step { reached: period, ..early });
 
         assert_eq!(component.enter_event_mode(), OK);
-        assert_eq!(component.settle_event(), 2.0 * period);
-        assert_eq!(component.get("tick_time"), period);
+        assert_eq!(component.settle_event(), 2.0 * period, "the event after this one");
+        assert_eq!(component.get("tick_time"), 0.0, "whose clock was not activated");
         assert_eq!(component.enter_step_mode(), OK);
+        assert_eq!(component.get("tick_time"), period);
         time += period;
         // A tick at the end is an event, too, but ends nothing early.
         let step = component.step_to_event(time, period);
@@ -62,48 +64,95 @@ fn steps_end_at_ticks() {
         assert_eq!(component.enter_event_mode(), OK);
         let update = component.end_event_iteration();
         assert_eq!(update, Update { status: OK, is_unfinished: false, next_event_time: Some(3.0 * period) });
+        assert_eq!(component.enter_step_mode(), OK);
         assert_eq!(component.get("tick_time"), 2.0 * period);
     }
 }
 
 #[test]
-fn the_output_clock_is_active_once_the_outputs_are_new() {
+fn a_tick_runs_when_its_clock_was_activated() {
     for unit in sampled_units() {
         let component = initialised(unit, 0.0);
         let [tick, ticked] = component.clocks();
         let before = component.snapshot();
-        assert_eq!(component.get_clock(ticked), (OK, 0));
-        assert_eq!(component.get_clock(tick), (OK, 0));
-        assert_eq!(component.set_clock(tick, 1), OK);
-        assert_eq!(component.get_clock(tick), (OK, 1));
-        assert_eq!(component.snapshot(), before, "nothing happens before the end of the iteration");
+        let clocks = || [tick, ticked].map(|clock| component.get_clock(clock));
+        assert_eq!(clocks(), [(OK, 0); 2]);
+        let idle = component.end_event_iteration();
+        let period = component.get("sample_time");
+        assert_eq!(idle, Update { status: OK, is_unfinished: false, next_event_time: Some(period) });
+        assert_eq!(component.snapshot(), before, "nobody has activated the clock");
 
+        assert_eq!(component.set_clock(tick, 1), OK);
+        assert_eq!(clocks(), [(OK, 1); 2], "the output clock is active with the input clock");
+        assert_eq!(component.snapshot(), before, "by the model structure outputs depend on no clock");
         let update = component.end_event_iteration();
-        assert!(update.is_unfinished);
-        assert_eq!([component.get_clock(tick), component.get_clock(ticked)], [(OK, 0), (OK, 1)]);
+        assert_eq!(update, Update { is_unfinished: true, ..idle });
+        assert_eq!(clocks(), [(OK, 0); 2], "the unit deactivates its clocks");
         assert_eq!(
             component.snapshot() != before,
             unit != "MaglevRigController",
             "which starts from its inputs"
         );
-        // A second activation at this instant changes nothing.
+        // "Periodic clocks must not be active for more than one call of fmi3UpdateDiscreteStates per Event Mode."
         let after = component.snapshot();
-        assert_eq!(component.set_clock(tick, 1), OK);
-        let update = component.end_event_iteration();
-        assert!(!update.is_unfinished);
-        assert_eq!(component.snapshot(), after);
-        assert_eq!([component.get_clock(tick), component.get_clock(ticked)], [(OK, 0), (OK, 0)]);
+        component.recorder.clear();
+        component.assert_refused(component.set_clock(tick, 1), &["no tick is due"]);
+        assert_eq!(component.end_event_iteration(), idle);
+        assert_eq!(component.enter_step_mode(), OK);
+        assert_eq!(component.snapshot(), after, "ticked once");
+    }
+}
+
+/// Sets another value in every input of a unit.
+fn move_inputs(component: &Component, k: u32) {
+    let inputs = component.description.variables.iter().filter(|row| row.causality == Causality::Input);
+    for (number, input) in inputs.enumerate() {
+        let value = 1e-3 * f64::from(1 + k) * (1 + number) as f64;
+        assert_eq!(component.set(input.name, value), OK, "{}", input.name);
+    }
+}
+
+#[test]
+fn a_tick_reads_the_inputs_at_its_activation_or_at_the_end_of_the_event() {
+    for unit in sampled_units() {
+        let [iterating, ignorant, stepping] = [EVENTS, EVENTS, Choices::default()].map(|choices| {
+            let component = Component::co_simulation(unit, choices);
+            component.initialise(0.0);
+            component
+        });
+        let [tick, _] = iterating.clocks();
+        let period = iterating.get("sample_time");
+        for k in 0..20 {
+            let time = f64::from(k) * period;
+            // The event iterations of the plant come first, with the inputs of the last event.
+            for component in [&iterating, &ignorant] {
+                component.settle_event();
+                move_inputs(component, k);
+            }
+            assert_eq!(iterating.set_clock(tick, 1), OK);
+            iterating.settle_event();
+            move_inputs(&stepping, k);
+            assert_eq!(stepping.step(time, period), OK);
+            for component in [&iterating, &ignorant] {
+                assert_eq!(component.enter_step_mode(), OK);
+                let step = component.step_to_event(time, period);
+                assert!(step.status == OK && step.is_event, "{step:?}");
+                assert_eq!(component.snapshot(), stepping.snapshot(), "{unit}, tick {k}");
+                assert_eq!(component.enter_event_mode(), OK);
+            }
+        }
     }
 }
 
 #[test]
 fn clocks_are_refused_where_they_make_no_sense() {
-    let component = initialised(CONTROLLER, 0.0);
+    let component = initialised(CONTROLLER, 0.0005);
     let [tick, ticked] = component.clocks();
-    component.settle_event();
     component.recorder.clear();
-    component
-        .assert_refused(component.set_clock(tick, 1), &["no tick is due at t = 0 s: expected t = 0.001 s"]);
+    component.assert_refused(
+        component.set_clock(tick, 1),
+        &["no tick is due at t = 0.0005 s: expected t = 0.001 s"],
+    );
     component.assert_refused(component.set_clock(ticked, 1), &["ticked", "the unit itself activates"]);
     component.assert_refused(component.set_clock(ticked + 1, 1), &["value reference", "is unknown"]);
     component
@@ -152,7 +201,7 @@ fn the_phase_decides_what_may_be_called() {
     assert_eq!(component.enter_event_mode(), OK);
     // SAFETY: a live handle.
     let status = unsafe { fmi3EvaluateDiscreteStates(component.handle) };
-    component.assert_refused(status, &["providesEvaluateDiscreteStates = false"]);
+    assert_eq!(status, OK, "ignored, as the standard wants it where providesEvaluateDiscreteStates is false");
     // SAFETY: a live handle; the results are not wanted.
     let status = unsafe {
         let none = null_mut();
@@ -162,6 +211,7 @@ fn the_phase_decides_what_may_be_called() {
     assert_eq!(component.terminate(), OK);
     assert_eq!(component.reset(), OK);
     component.initialise(0.0);
+    assert_eq!(component.set_clock(component.clocks()[0], 1), OK);
     assert!(component.end_event_iteration().is_unfinished, "the first tick, again");
 }
 
@@ -195,12 +245,13 @@ fn a_state_saved_at_an_event_goes_on_with_the_event() {
     assert_eq!(component.set_clock(tick, 1), OK);
     let set = component.saved_bytes();
     component.end_event_iteration();
-    let has_ticked = component.saved_bytes();
+    let after = component.snapshot();
     assert_eq!(component.restore_bytes(&set), OK);
-    assert_eq!([component.get_clock(tick), component.get_clock(ticked)], [(OK, 1), (OK, 0)]);
+    assert_eq!([component.get_clock(tick), component.get_clock(ticked)], [(OK, 1); 2]);
     let other = Component::co_simulation(CONTROLLER, EVENTS);
-    assert_eq!(other.restore_bytes(&has_ticked), OK);
-    assert_eq!([other.get_clock(tick), other.get_clock(ticked)], [(OK, 0), (OK, 1)]);
+    assert_eq!(other.restore_bytes(&set), OK);
+    assert!(other.end_event_iteration().is_unfinished);
+    assert_eq!(other.snapshot(), after);
     assert_eq!(other.settle_event(), 1e-3);
 
     // An instance without event mode, or of FMI 2.0, cannot go on from there.

@@ -25,7 +25,7 @@ thread_local! {
     static SCRIPT: RefCell<Script> = RefCell::default();
 }
 
-unsafe extern "C" fn callback(
+unsafe extern "C-unwind" fn callback(
     _: *mut c_void,
     time: f64,
     set_requested: fmi3Boolean,
@@ -50,7 +50,8 @@ unsafe extern "C" fn callback(
         if let Some(signal) = signal {
             assert_eq!(fmi3SetFloat64(handle, &1, 1, &signal(time), 1), OK);
         }
-        // Neither parameters nor other functions.
+        // Neither what was not registered, nor parameters, nor other functions.
+        assert_eq!(fmi3SetFloat64(handle, &2, 1, &0.0, 1), ERROR);
         assert_eq!(fmi3SetInt64(handle, &1, 1, &1, 1), ERROR);
         let [mut a, mut b, mut c] = [0; 3];
         assert_eq!(fmi3DoStep(handle, time, 1.0, 1, &mut a, &mut b, &mut c, &mut now), ERROR);
@@ -65,7 +66,7 @@ unsafe extern "C" fn callback(
 fn instance(early_return: bool, script: Script) -> Component {
     let choices = Choices { early_return, intermediate_update: Some(callback), ..Choices::default() };
     let component = Component::co_simulation(CONTROLLER, choices);
-    assert_eq!(component.reference("position"), 1);
+    assert_eq!((component.reference("position"), component.reference("voltage_applied")), (1, 2));
     component.initialise(0.0);
     SCRIPT.set(Script { handle: component.handle as usize, ..script });
     component

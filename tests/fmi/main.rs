@@ -10,6 +10,9 @@ mod concurrency;
 mod dependencies;
 mod derivatives;
 mod event_mode;
+mod failing_memory;
+#[cfg(target_arch = "x86_64")]
+mod floating_point;
 mod instantiation;
 mod intermediate_update;
 mod life_cycle;
@@ -25,8 +28,11 @@ mod saved_state;
 mod scheduled_execution;
 mod standard;
 mod steps;
+mod stop_time;
 #[cfg(feature = "tools")]
 mod symbols;
+#[cfg(feature = "tools")]
+mod throwing;
 mod tick_modes;
 mod ticks;
 mod values;

@@ -177,7 +177,7 @@ const RULES: &[Rule] = &[
     ("Reset", "xxxxx", |c| c.reset()),
 ];
 
-unsafe extern "C" fn enter3(handle: *mut core::ffi::c_void) -> i32 {
+unsafe extern "C-unwind" fn enter3(handle: *mut core::ffi::c_void) -> i32 {
     // SAFETY: the caller's promise.
     unsafe { maglev_fmu::fmi::fmi3::fmi3EnterInitializationMode(handle, 0, 0.0, 0.0, 0, 0.0) }
 }
@@ -269,4 +269,44 @@ fn functions_of_the_other_interface_are_refused() {
     let controller = Component::in_phase(Standard::Fmi3, CONTROLLER, super::harness::Phase::Step);
     let status = controller.directional(&[], &[], &[], &mut []);
     controller.assert_refused(status, &["not offered by this unit: its outputs are held between ticks"]);
+}
+
+#[test]
+fn status_functions_of_fmi2_are_those_of_co_simulation() {
+    let (_, unit) = plants().next().unwrap();
+    let component = Component::in_continuous_time(Standard::Fmi2, unit);
+    let mut time = 0.0;
+    for terminates in [false, true] {
+        if terminates {
+            assert_eq!(component.terminate(), OK);
+            component.recorder.clear();
+        }
+        // SAFETY: a live handle, room for the result.
+        let status = unsafe {
+            use maglev_fmu::fmi::fmi2::{fmi2GetRealStatus, types::FMI2_LAST_SUCCESSFUL_TIME};
+            fmi2GetRealStatus(component.handle, FMI2_LAST_SUCCESSFUL_TIME, &mut time)
+        };
+        let said = if terminates { "not a function of model exchange" } else { "continuous-time mode" };
+        component.assert_refused(status, &[said]);
+    }
+}
+
+/// FMI 2.0.5, table in section 3.2.3, conditions 4 and 5; FMI 3.0.2, section 2.3.5.
+#[test]
+fn a_state_that_does_not_jump_is_set_at_an_event_by_fmi3_only() {
+    for (standard, unit) in plants() {
+        let component = Component::in_continuous_time(standard, unit);
+        let states = component.description.continuous_states().map(|(state, _)| state);
+        for state in states.map(|state| &component.description.variables[state]) {
+            assert_eq!(component.set(state.name, 1e-3), OK, "in continuous time");
+            assert_eq!(component.enter_event_mode(), OK);
+            let status = component.set(state.name, 1e-3);
+            if standard == Standard::Fmi3 && !state.is_reinitialised {
+                assert_eq!(status, OK, "{}", state.name);
+            } else {
+                component.assert_refused(status, &[state.name, "a continuous state", "event mode"]);
+            }
+            assert_eq!(component.enter_continuous_time(), OK);
+        }
+    }
 }

@@ -34,9 +34,6 @@ impl Unit for Defective {
         assert!(self.steps < 3, "deliberate");
         self.plant.advance(duration, journal)
     }
-    fn boxed_clone(&self) -> Box<dyn Unit> {
-        Box::new(self.clone())
-    }
 }
 
 /// A defective instance behind the boundary.
@@ -46,9 +43,10 @@ fn defective(standard: Standard, logging_on: bool) -> Component {
         Standard::Fmi2 => Callback::Fmi2(fmi2_logger(), recorder.environment()),
         Standard::Fmi3 => Callback::Fmi3(fmi3_logger, recorder.environment()),
     };
-    let logger = Logger::new(callback, c"defective".into(), logging_on);
+    let logger = Logger::new(callback, c"defective", logging_on).unwrap();
     let unit = Box::new(Defective { plant: MagneticBearingPlant::new(), steps: 0 });
-    let handle = Box::into_raw(Box::new(Instance::new(unit, Interface::CoSimulation, logger))).cast();
+    let instance = Instance::new(unit, Interface::CoSimulation, logger).unwrap();
+    let handle = Box::into_raw(Box::new(instance)).cast();
     Component::from_handle(standard, PLANT, handle, recorder)
 }
 

@@ -6,12 +6,12 @@ use core::ffi::c_void;
 use maglev_fmu::fmi::fmi3::types::{FMI3_INTERVAL_CHANGED, FMI3_INTERVAL_UNCHANGED};
 use maglev_fmu::fmi::fmi3::*;
 
-use super::harness::clocked::sampled_units;
+use super::harness::clocked::{Choices, sampled_units};
 use super::harness::{CONTROLLER, Component, ERROR, OK};
 
 type Timing = ([f64; 2], [(u64, u64); 2], [i32; 2]);
 
-/// Interval and shift of `tick`: as decimals, as fractions, and the qualifiers.
+/// Interval and shift of `tick`: as decimals, as fractions, and the qualifiers in the order in which they were told.
 fn timing(component: &Component) -> Option<Timing> {
     let tick = component.clocks()[0];
     let (mut interval, mut shift, mut qualifiers) = (0.0, 0.0, [7; 2]);
@@ -31,37 +31,103 @@ fn timing(component: &Component) -> Option<Timing> {
     (statuses == [OK; 4]).then_some(([interval, shift], fractions, qualifiers))
 }
 
+/// In initialisation mode.
+fn initialising(sample_time: f64, start_time: f64) -> Component {
+    let component = Component::scheduled(CONTROLLER, None);
+    assert_eq!(component.set("sample_time", sample_time), OK);
+    assert_eq!(component.enter_initialization(start_time, None), OK);
+    component
+}
+
+const NEWS: [i32; 2] = [FMI3_INTERVAL_CHANGED, FMI3_INTERVAL_UNCHANGED];
+const NO_NEWS: [i32; 2] = [FMI3_INTERVAL_UNCHANGED; 2];
+
 #[test]
 fn intervals_follow_from_the_sample_time() {
     let component = Component::scheduled(CONTROLLER, None);
     assert_eq!(timing(&component), None, "before initialisation");
-    assert_eq!(component.enter_initialization(0.0025, None), OK);
-    let changed = [FMI3_INTERVAL_CHANGED; 2];
-    let (decimals, fractions, qualifiers) = timing(&component).unwrap();
-    assert_eq!((decimals[0], fractions[0], qualifiers), (1e-3, (1, 1000), changed));
-    assert!((decimals[1] - 5e-4).abs() < 1e-15, "{decimals:?}");
+    let component = initialising(1e-3, 0.0025);
+    assert_eq!(timing(&component), Some(([1e-3, 5e-4], [(1, 1000), (1, 2000)], NEWS)));
+    assert_eq!(timing(&component), Some(([1e-3, 5e-4], [(1, 1000), (1, 2000)], NO_NEWS)));
     assert_eq!(component.set("sample_time", 0.3e-3), OK);
-    let (decimals, fractions, _) = timing(&component).unwrap();
-    assert_eq!((decimals[0], fractions[0]), (0.3e-3, (3, 10_000)));
-    assert!((decimals[1] - 2e-4).abs() < 1e-15, "the first tick is at 2.7 ms");
-    assert_eq!(fractions[1].0 as f64 / fractions[1].1 as f64, decimals[1]);
+    let first_tick = "the first tick is at 2.7 ms";
+    assert_eq!(timing(&component), Some(([0.3e-3, 2e-4], [(3, 10_000), (1, 5000)], NEWS)), "{first_tick}");
+    assert_eq!(component.set("controller.k1", 1.0), OK);
+    assert_eq!(timing(&component).unwrap().2, NO_NEWS, "another parameter");
 
-    assert_eq!(component.exit_initialization(), OK);
-    let (mut interval, mut qualifier) = (0.0, 7);
-    // SAFETY: a live handle, one reference, room for the results.
-    let status = unsafe {
-        fmi3GetIntervalDecimal(component.handle, &component.clocks()[0], 1, &mut interval, &mut qualifier)
+    let interval_of = |component: &Component, clock: usize| {
+        let (mut interval, mut qualifier) = (0.0, 7);
+        // SAFETY: a live handle, one reference, room for the results.
+        let status = unsafe {
+            let reference = component.clocks()[clock];
+            fmi3GetIntervalDecimal(component.handle, &reference, 1, &mut interval, &mut qualifier)
+        };
+        (status, interval, qualifier)
     };
-    assert_eq!((status, interval, qualifier), (OK, 0.3e-3, FMI3_INTERVAL_UNCHANGED));
     component.recorder.clear();
-    // SAFETY: a live handle, one reference.
-    let refused = unsafe { fmi3SetIntervalDecimal(component.handle, &component.clocks()[0], 1, &interval) };
-    component.assert_refused(refused, &["fmi3SetIntervalDecimal: not offered", "sample_time"]);
-    // SAFETY: a live handle, one reference, room for the results.
-    let refused = unsafe {
-        fmi3GetIntervalDecimal(component.handle, &component.clocks()[1], 1, &mut interval, &mut qualifier)
+    component.assert_refused(interval_of(&component, 1).0, &["ticked"]);
+    assert_eq!(component.exit_initialization(), OK);
+    component.recorder.clear();
+    component.assert_refused(interval_of(&component, 0).0, &["clock activation mode", "IntervalDecimal"]);
+
+    let events = Choices { event_mode: true, early_return: true, intermediate_update: None };
+    let component = Component::co_simulation(CONTROLLER, events);
+    component.initialise(0.0);
+    assert_eq!(interval_of(&component, 0), (OK, 1e-3, FMI3_INTERVAL_CHANGED), "never asked before");
+    component.settle_event();
+    assert_eq!(interval_of(&component, 0), (OK, 1e-3, FMI3_INTERVAL_UNCHANGED));
+}
+
+#[test]
+fn shifts_are_exact() {
+    for (sample_time, start_time, shift, fraction) in [
+        (1e-4, 0.00025, 5e-5, (1, 20_000)),
+        (1e-3, 0.0, 0.0, (0, 1)),
+        (1e-3, 7.0, 0.0, (0, 1)),
+        (1e-4, -0.00025, 5e-5, (1, 20_000)),
+        (1.0 / 60.0, 0.01, 1.0 / 150.0, (1, 150)),
+    ] {
+        let told = timing(&initialising(sample_time, start_time)).unwrap();
+        assert_eq!((told.0[1], told.1[1]), (shift, fraction), "{sample_time} {start_time}");
+    }
+}
+
+#[test]
+fn an_importer_may_set_the_interval() {
+    let component = initialising(1e-3, 0.0);
+    let tick = component.clocks()[0];
+    let set = |interval: f64| {
+        // SAFETY: a live handle, one reference, one value.
+        unsafe { fmi3SetIntervalDecimal(component.handle, &tick, 1, &interval) }
     };
-    component.assert_refused(refused, &["ticked"]);
+    let set_fraction = |counter: u64, resolution: u64| {
+        // SAFETY: a live handle, one reference, one value each.
+        unsafe { fmi3SetIntervalFraction(component.handle, &tick, 1, &counter, &resolution) }
+    };
+    assert_eq!(set(2e-3), OK);
+    assert_eq!(component.get("sample_time"), 2e-3);
+    assert_eq!(timing(&component).unwrap().1[0], (1, 500));
+    assert_eq!(set_fraction(1, 3000), OK);
+    assert_eq!(component.get("sample_time"), 1.0 / 3000.0);
+    component.recorder.clear();
+    for interval in [0.0, -1e-3, 100.0] {
+        component.assert_refused(set(interval), &["sample_time", "expected 1e-6 to 1 s"]);
+    }
+    for interval in [f64::NAN, f64::INFINITY] {
+        component.assert_refused(set(interval), &["sample_time", "expected a finite number"]);
+    }
+    for counter in [0, 1] {
+        component.assert_refused(set_fraction(counter, 0), &["sample_time", "expected a finite number"]);
+    }
+    assert_eq!(component.get("sample_time"), 1.0 / 3000.0, "refused ones change nothing");
+    assert_eq!(component.exit_initialization(), OK);
+    component.recorder.clear();
+    component.assert_refused(set(1e-3), &["fmi3SetIntervalDecimal", "clock activation mode"]);
+    for k in 0..3 {
+        let time = f64::from(k) / 3000.0;
+        assert_eq!(component.activate(time), OK);
+        assert_eq!(component.get("tick_time"), time);
+    }
 }
 
 #[test]
@@ -69,13 +135,10 @@ fn activations_run_ticks() {
     for unit in sampled_units() {
         let component = Component::scheduled(unit, None);
         component.initialise(0.0);
-        let [_, ticked] = component.clocks();
         for k in 0..5 {
             let time = f64::from(k) * component.get("sample_time");
             assert_eq!(component.activate(time), OK);
             assert_eq!((component.get("time"), component.get("tick_time")), (time, time));
-            assert_eq!(component.get_clock(ticked), (OK, 1), "told once");
-            assert_eq!(component.get_clock(ticked), (OK, 0));
         }
         // The scheduler decides about time: off the grid, too.
         assert_eq!(component.activate(0.123_45), OK);
@@ -115,7 +178,7 @@ thread_local! {
     static TOLD: Cell<(u32, u32, i32)> = const { Cell::new((0, 0, 0)) };
 }
 
-unsafe extern "C" fn clock_update(_: *mut c_void) {
+unsafe extern "C-unwind" fn clock_update(_: *mut c_void) {
     let (handle, ticked) = SUBJECT.get();
     let (calls, active, refused) = TOLD.get();
     let (mut first, mut second) = (7, 7);
@@ -140,8 +203,10 @@ fn the_callback_may_ask_for_the_clock() {
         assert_eq!(component.activate(f64::from(k) * 1e-3), OK);
     }
     assert_eq!(TOLD.get(), (4, 4, 4 * ERROR));
-    assert_eq!(component.get_clock(ticked), (OK, 0));
     assert_eq!(component.get("tick_time"), 3e-3);
+    // Clocks are told of in the callback only.
+    component.recorder.clear();
+    component.assert_refused(component.get_clock(ticked).0, &["fmi3GetClock", "clock activation mode"]);
 }
 
 #[test]

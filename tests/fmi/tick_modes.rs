@@ -39,7 +39,7 @@ const MODES: [Mode; 7] = [
     Mode::Scheduled,
 ];
 
-unsafe extern "C" fn ignore(
+unsafe extern "C-unwind" fn ignore(
     _: *mut c_void,
     _: f64,
     _: fmi3Boolean,

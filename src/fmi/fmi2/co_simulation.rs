@@ -11,7 +11,7 @@ use crate::fmi::{CallError, Function, Status};
 /// # Safety
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2DoStep(
+pub unsafe extern "C-unwind" fn fmi2DoStep(
     component: fmi2Component,
     current_communication_point: fmi2Real,
     communication_step_size: fmi2Real,
@@ -30,7 +30,7 @@ pub unsafe extern "C" fn fmi2DoStep(
 /// # Safety
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2CancelStep(component: fmi2Component) -> fmi2Status {
+pub unsafe extern "C-unwind" fn fmi2CancelStep(component: fmi2Component) -> fmi2Status {
     // SAFETY: the caller's promise.
     unsafe { enter(component, &may::CANCEL_STEP, |_| Ok(())) }
 }
@@ -40,7 +40,7 @@ pub unsafe extern "C" fn fmi2CancelStep(component: fmi2Component) -> fmi2Status 
 /// # Safety
 /// A live handle, used by one thread at a time; `value` is null or writable.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetStatus(
+pub unsafe extern "C-unwind" fn fmi2GetStatus(
     component: fmi2Component,
     kind: fmi2StatusKind,
     value: *mut fmi2Status,
@@ -56,7 +56,7 @@ pub unsafe extern "C" fn fmi2GetStatus(
 /// # Safety
 /// A live handle, used by one thread at a time; `value` is null or writable.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetRealStatus(
+pub unsafe extern "C-unwind" fn fmi2GetRealStatus(
     component: fmi2Component,
     kind: fmi2StatusKind,
     value: *mut fmi2Real,
@@ -74,13 +74,18 @@ pub unsafe extern "C" fn fmi2GetRealStatus(
 /// # Safety
 /// A live handle, used by one thread at a time; `value` is not touched.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetIntegerStatus(
+pub unsafe extern "C-unwind" fn fmi2GetIntegerStatus(
     component: fmi2Component,
     kind: fmi2StatusKind,
     _value: *mut fmi2Integer,
 ) -> fmi2Status {
     // SAFETY: the caller's promise.
-    unsafe { enter(component, &may::GET_INTEGER_STATUS, |_| Err(CallError::NoSuchStatus(kind))) }
+    unsafe {
+        enter(component, &may::GET_INTEGER_STATUS, |instance| {
+            instance.require_co_simulation()?;
+            Err(CallError::NoSuchStatus(kind))
+        })
+    }
 }
 
 /// Whether the unit wants to end the simulation: never.
@@ -88,7 +93,7 @@ pub unsafe extern "C" fn fmi2GetIntegerStatus(
 /// # Safety
 /// A live handle, used by one thread at a time; `value` is null or writable.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetBooleanStatus(
+pub unsafe extern "C-unwind" fn fmi2GetBooleanStatus(
     component: fmi2Component,
     kind: fmi2StatusKind,
     value: *mut fmi2Boolean,
@@ -102,7 +107,7 @@ pub unsafe extern "C" fn fmi2GetBooleanStatus(
 /// # Safety
 /// A live handle, used by one thread at a time; `value` is null or writable.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetStringStatus(
+pub unsafe extern "C-unwind" fn fmi2GetStringStatus(
     component: fmi2Component,
     kind: fmi2StatusKind,
     value: *mut fmi2String,
@@ -126,6 +131,7 @@ unsafe fn status<T>(
     // SAFETY: the caller's promise.
     unsafe {
         enter(component, function, |instance| {
+            instance.require_co_simulation()?;
             if kind != known {
                 return Err(CallError::NoSuchStatus(kind));
             }

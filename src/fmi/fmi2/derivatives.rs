@@ -12,7 +12,7 @@ use crate::fmi::boundary::{enter, input, output};
 /// # Safety
 /// A live handle, used by one thread at a time; the arrays hold as many elements as the counts say.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
+pub unsafe extern "C-unwind" fn fmi2GetDirectionalDerivative(
     component: fmi2Component,
     unknowns: *const fmi2ValueReference,
     unknown_count: usize,
@@ -39,7 +39,7 @@ pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
 /// # Safety
 /// A live handle, used by one thread at a time; all arrays hold `count` elements.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
+pub unsafe extern "C-unwind" fn fmi2SetRealInputDerivatives(
     component: fmi2Component,
     references: *const fmi2ValueReference,
     count: usize,
@@ -63,7 +63,7 @@ pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
 /// # Safety
 /// A live handle, used by one thread at a time; all arrays hold `count` elements.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
+pub unsafe extern "C-unwind" fn fmi2GetRealOutputDerivatives(
     component: fmi2Component,
     references: *const fmi2ValueReference,
     count: usize,

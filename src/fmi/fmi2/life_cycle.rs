@@ -7,7 +7,7 @@ use super::legality as may;
 use super::types::*;
 use crate::fmi::Interface;
 use crate::fmi::boundary::{create, enter, free, input};
-use crate::fmi::instance::instantiate;
+use crate::fmi::instantiation::Request;
 use crate::fmi::log::{Callback, c_string, set_debug_logging};
 
 /// Name of the platform's type definitions, always "default".
@@ -27,7 +27,7 @@ pub extern "C" fn fmi2GetVersion() -> *const c_char {
 /// # Safety
 /// As the standard demands: a live handle used by one thread at a time, `categories` with `count` C strings.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetDebugLogging(
+pub unsafe extern "C-unwind" fn fmi2SetDebugLogging(
     component: fmi2Component,
     logging_on: fmi2Boolean,
     count: usize,
@@ -51,7 +51,7 @@ pub unsafe extern "C" fn fmi2SetDebugLogging(
 /// Strings are null or end with NUL; `functions` is null or valid, and its logger stays callable while the instance
 /// lives.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2Instantiate(
+pub unsafe extern "C-unwind" fn fmi2Instantiate(
     instance_name: fmi2String,
     fmu_type: fmi2Type,
     guid: fmi2String,
@@ -70,8 +70,17 @@ pub unsafe extern "C" fn fmi2Instantiate(
         _ => Err("an unknown fmi2Type"),
     };
     // SAFETY: the caller's promise.
-    let (name, token) = unsafe { (c_string(instance_name), c_string(guid)) };
-    create(|| instantiate("fmi2Instantiate", name, token, callback, logging_on != FMI2_FALSE, interface))
+    unsafe {
+        let request = Request {
+            function: "fmi2Instantiate",
+            name: c_string(instance_name),
+            token: c_string(guid),
+            callback,
+            logging_on: logging_on != FMI2_FALSE,
+            interface,
+        };
+        create(&request, |_| Ok(()))
+    }
 }
 
 /// Frees an instance; null is ignored.
@@ -89,7 +98,7 @@ pub unsafe extern "C" fn fmi2FreeInstance(component: fmi2Component) {
 /// # Safety
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetupExperiment(
+pub unsafe extern "C-unwind" fn fmi2SetupExperiment(
     component: fmi2Component,
     _tolerance_defined: fmi2Boolean,
     _tolerance: fmi2Real,
@@ -108,7 +117,7 @@ pub unsafe extern "C" fn fmi2SetupExperiment(
 /// # Safety
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2EnterInitializationMode(component: fmi2Component) -> fmi2Status {
+pub unsafe extern "C-unwind" fn fmi2EnterInitializationMode(component: fmi2Component) -> fmi2Status {
     // SAFETY: the caller's promise.
     unsafe {
         enter(component, &may::ENTER_INITIALIZATION_MODE, |instance| instance.enter_initialization_mode())
@@ -118,7 +127,7 @@ pub unsafe extern "C" fn fmi2EnterInitializationMode(component: fmi2Component) -
 /// # Safety
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2ExitInitializationMode(component: fmi2Component) -> fmi2Status {
+pub unsafe extern "C-unwind" fn fmi2ExitInitializationMode(component: fmi2Component) -> fmi2Status {
     // SAFETY: the caller's promise.
     unsafe {
         enter(component, &may::EXIT_INITIALIZATION_MODE, |instance| instance.exit_initialization_mode())
@@ -128,7 +137,7 @@ pub unsafe extern "C" fn fmi2ExitInitializationMode(component: fmi2Component) ->
 /// # Safety
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2Terminate(component: fmi2Component) -> fmi2Status {
+pub unsafe extern "C-unwind" fn fmi2Terminate(component: fmi2Component) -> fmi2Status {
     // SAFETY: the caller's promise.
     unsafe { enter(component, &may::TERMINATE, |instance| instance.terminate()) }
 }
@@ -138,7 +147,7 @@ pub unsafe extern "C" fn fmi2Terminate(component: fmi2Component) -> fmi2Status {
 /// # Safety
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2Reset(component: fmi2Component) -> fmi2Status {
+pub unsafe extern "C-unwind" fn fmi2Reset(component: fmi2Component) -> fmi2Status {
     // SAFETY: the caller's promise.
     unsafe { enter(component, &may::RESET, |instance| instance.reset()) }
 }

@@ -8,7 +8,7 @@ use crate::fmi::boundary::{enter, input, output, report};
 /// # Safety
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2EnterEventMode(component: fmi2Component) -> fmi2Status {
+pub unsafe extern "C-unwind" fn fmi2EnterEventMode(component: fmi2Component) -> fmi2Status {
     // SAFETY: the caller's promise.
     unsafe { enter(component, &may::ENTER_EVENT_MODE, |instance| instance.enter_event_mode()) }
 }
@@ -18,7 +18,7 @@ pub unsafe extern "C" fn fmi2EnterEventMode(component: fmi2Component) -> fmi2Sta
 /// # Safety
 /// A live handle, used by one thread at a time; `event_info` is null or writable.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2NewDiscreteStates(
+pub unsafe extern "C-unwind" fn fmi2NewDiscreteStates(
     component: fmi2Component,
     event_info: *mut fmi2EventInfo,
 ) -> fmi2Status {
@@ -45,7 +45,7 @@ pub unsafe extern "C" fn fmi2NewDiscreteStates(
 /// # Safety
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2EnterContinuousTimeMode(component: fmi2Component) -> fmi2Status {
+pub unsafe extern "C-unwind" fn fmi2EnterContinuousTimeMode(component: fmi2Component) -> fmi2Status {
     // SAFETY: the caller's promise.
     unsafe {
         enter(component, &may::ENTER_CONTINUOUS_TIME_MODE, |instance| instance.enter_continuous_time_mode())
@@ -57,7 +57,7 @@ pub unsafe extern "C" fn fmi2EnterContinuousTimeMode(component: fmi2Component) -
 /// # Safety
 /// A live handle, used by one thread at a time; the results are null or writable.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2CompletedIntegratorStep(
+pub unsafe extern "C-unwind" fn fmi2CompletedIntegratorStep(
     component: fmi2Component,
     _no_set_fmu_state_prior_to_current_point: fmi2Boolean,
     enter_event_mode: *mut fmi2Boolean,
@@ -66,7 +66,7 @@ pub unsafe extern "C" fn fmi2CompletedIntegratorStep(
     // SAFETY: the caller's promise.
     unsafe {
         enter(component, &may::COMPLETED_INTEGRATOR_STEP, |instance| {
-            instance.require_model_exchange()?;
+            instance.complete_integrator_step()?;
             report(enter_event_mode, FMI2_FALSE);
             report(terminate_simulation, FMI2_FALSE);
             Ok(())
@@ -77,7 +77,7 @@ pub unsafe extern "C" fn fmi2CompletedIntegratorStep(
 /// # Safety
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetTime(component: fmi2Component, time: fmi2Real) -> fmi2Status {
+pub unsafe extern "C-unwind" fn fmi2SetTime(component: fmi2Component, time: fmi2Real) -> fmi2Status {
     // SAFETY: the caller's promise.
     unsafe { enter(component, &may::SET_TIME, |instance| instance.set_time(time)) }
 }
@@ -85,7 +85,7 @@ pub unsafe extern "C" fn fmi2SetTime(component: fmi2Component, time: fmi2Real) -
 /// # Safety
 /// A live handle, used by one thread at a time; `states` holds `count` elements.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetContinuousStates(
+pub unsafe extern "C-unwind" fn fmi2SetContinuousStates(
     component: fmi2Component,
     states: *const fmi2Real,
     count: usize,
@@ -104,7 +104,7 @@ macro_rules! vectors {
         /// # Safety
         /// A live handle, used by one thread at a time; `values` has room for `count` elements.
         #[unsafe(no_mangle)]
-        pub unsafe extern "C" fn $function(
+        pub unsafe extern "C-unwind" fn $function(
             component: fmi2Component,
             values: *mut fmi2Real,
             count: usize,

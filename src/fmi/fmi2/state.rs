@@ -11,7 +11,10 @@ use crate::fmi::state_handle::{deserialise_state, free_state, get_state, state_b
 /// # Safety
 /// A live handle, used by one thread at a time; `state` is null or points to null or to a living state.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetFMUstate(component: fmi2Component, state: *mut fmi2FMUstate) -> fmi2Status {
+pub unsafe extern "C-unwind" fn fmi2GetFMUstate(
+    component: fmi2Component,
+    state: *mut fmi2FMUstate,
+) -> fmi2Status {
     // SAFETY: the caller's promise.
     unsafe { enter(component, &may::GET_FMU_STATE, |instance| get_state(instance, state)) }
 }
@@ -21,7 +24,7 @@ pub unsafe extern "C" fn fmi2GetFMUstate(component: fmi2Component, state: *mut f
 /// # Safety
 /// A live handle, used by one thread at a time; `state` is null or a living state.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetFMUstate(component: fmi2Component, state: fmi2FMUstate) -> fmi2Status {
+pub unsafe extern "C-unwind" fn fmi2SetFMUstate(component: fmi2Component, state: fmi2FMUstate) -> fmi2Status {
     // SAFETY: the caller's promise.
     unsafe { enter(component, &may::SET_FMU_STATE, |instance| Ok(instance.restore(state_behind(state)?)?)) }
 }
@@ -31,7 +34,10 @@ pub unsafe extern "C" fn fmi2SetFMUstate(component: fmi2Component, state: fmi2FM
 /// # Safety
 /// A live handle, used by one thread at a time; `state` is null or points to null or to a living state.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2FreeFMUstate(component: fmi2Component, state: *mut fmi2FMUstate) -> fmi2Status {
+pub unsafe extern "C-unwind" fn fmi2FreeFMUstate(
+    component: fmi2Component,
+    state: *mut fmi2FMUstate,
+) -> fmi2Status {
     // SAFETY: the caller's promise.
     unsafe { enter(component, &may::FREE_FMU_STATE, |_| free_state(state)) }
 }
@@ -41,7 +47,7 @@ pub unsafe extern "C" fn fmi2FreeFMUstate(component: fmi2Component, state: *mut 
 /// # Safety
 /// A live handle, used by one thread at a time; `state` is null or a living state, `size` null or writable.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SerializedFMUstateSize(
+pub unsafe extern "C-unwind" fn fmi2SerializedFMUstateSize(
     component: fmi2Component,
     state: fmi2FMUstate,
     size: *mut usize,
@@ -60,7 +66,7 @@ pub unsafe extern "C" fn fmi2SerializedFMUstateSize(
 /// # Safety
 /// A live handle, used by one thread at a time; `state` is null or a living state, `bytes` holds `size` bytes.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SerializeFMUstate(
+pub unsafe extern "C-unwind" fn fmi2SerializeFMUstate(
     component: fmi2Component,
     state: fmi2FMUstate,
     bytes: *mut fmi2Byte,
@@ -80,7 +86,7 @@ pub unsafe extern "C" fn fmi2SerializeFMUstate(
 /// A live handle, used by one thread at a time; `bytes` holds `size` bytes, `state` is null or points to null or to a
 /// living state.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
+pub unsafe extern "C-unwind" fn fmi2DeSerializeFMUstate(
     component: fmi2Component,
     bytes: *const fmi2Byte,
     size: usize,

@@ -29,8 +29,8 @@ pub const FMI2_PENDING_STATUS: fmi2StatusKind = 1;
 pub const FMI2_LAST_SUCCESSFUL_TIME: fmi2StatusKind = 2;
 pub const FMI2_TERMINATED: fmi2StatusKind = 3;
 
-/// The importer's logger; the message is a `printf` format, so a `%` in it must be doubled.
-pub type fmi2CallbackLogger = unsafe extern "C" fn(
+/// The importer's logger; the message is a `printf` format, so a `%` in it must be doubled. It may throw.
+pub type fmi2CallbackLogger = unsafe extern "C-unwind" fn(
     environment: fmi2ComponentEnvironment,
     instance_name: fmi2String,
     status: fmi2Status,

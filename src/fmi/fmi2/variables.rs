@@ -3,20 +3,21 @@
 
 use super::legality as may;
 use super::types::*;
+use crate::fmi::FmiVersion;
 use crate::fmi::access::DataType;
 use crate::fmi::boundary::{enter, input, output};
 use crate::unit::variable::Kind;
 
 const REAL: DataType =
-    DataType { name: "a Real", carries: |kind| matches!(kind, Kind::Real(_)), has_clocks: false };
+    DataType { name: "a Real", carries: |kind| matches!(kind, Kind::Real(_)), standard: FmiVersion::Two };
 const INTEGER: DataType = DataType {
     name: "an Integer or Enumeration",
     carries: |kind| matches!(kind, Kind::Integer | Kind::Enumeration(_)),
-    has_clocks: false,
+    standard: FmiVersion::Two,
 };
 const BOOLEAN: DataType =
-    DataType { name: "a Boolean", carries: |kind| matches!(kind, Kind::Boolean), has_clocks: false };
-const STRING: DataType = DataType { name: "a String", carries: |_| false, has_clocks: false };
+    DataType { name: "a Boolean", carries: |kind| matches!(kind, Kind::Boolean), standard: FmiVersion::Two };
+const STRING: DataType = DataType { name: "a String", carries: |_| false, standard: FmiVersion::Two };
 
 /// A getter and a setter of one data type.
 macro_rules! accessors {
@@ -24,7 +25,7 @@ macro_rules! accessors {
         /// # Safety
         /// A live handle, used by one thread at a time; both arrays hold `count` elements.
         #[unsafe(no_mangle)]
-        pub unsafe extern "C" fn $get(
+        pub unsafe extern "C-unwind" fn $get(
             component: fmi2Component,
             references: *const fmi2ValueReference,
             count: usize,
@@ -42,7 +43,7 @@ macro_rules! accessors {
         /// # Safety
         /// A live handle, used by one thread at a time; both arrays hold `count` elements.
         #[unsafe(no_mangle)]
-        pub unsafe extern "C" fn $set(
+        pub unsafe extern "C-unwind" fn $set(
             component: fmi2Component,
             references: *const fmi2ValueReference,
             count: usize,

@@ -5,12 +5,12 @@ use super::legality as may;
 use super::types::*;
 use crate::fmi::boundary::{enter, input, output};
 use crate::fmi::fraction::fraction;
-use crate::fmi::{CallError, Instance, Phase};
+use crate::fmi::{CallError, Instance};
 
 /// # Safety
 /// A live handle, used by one thread at a time; both arrays hold `count` elements.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetClock(
+pub unsafe extern "C-unwind" fn fmi3GetClock(
     instance: fmi3Instance,
     references: *const fmi3ValueReference,
     count: usize,
@@ -28,7 +28,7 @@ pub unsafe extern "C" fn fmi3GetClock(
 /// # Safety
 /// A live handle, used by one thread at a time; both arrays hold `count` elements.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SetClock(
+pub unsafe extern "C-unwind" fn fmi3SetClock(
     instance: fmi3Instance,
     references: *const fmi3ValueReference,
     count: usize,
@@ -48,7 +48,7 @@ pub unsafe extern "C" fn fmi3SetClock(
 /// # Safety
 /// A live handle, used by one thread at a time; all arrays hold `count` elements.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetIntervalDecimal(
+pub unsafe extern "C-unwind" fn fmi3GetIntervalDecimal(
     instance: fmi3Instance,
     references: *const fmi3ValueReference,
     count: usize,
@@ -61,12 +61,12 @@ pub unsafe extern "C" fn fmi3GetIntervalDecimal(
             let references = input(references, count, "valueReferences")?;
             let intervals = output(intervals, count, "intervals")?;
             let qualifiers = output(qualifiers, count, "qualifiers")?;
-            let qualifier = qualifier(instance);
-            for_each(instance, references, |index, (interval, _)| {
-                intervals[index] = interval;
-                qualifiers[index] = qualifier;
-                Ok(())
-            })
+            require_clocks(instance, references)?;
+            for (index, reference) in references.iter().enumerate() {
+                intervals[index] = instance.timing(*reference)?.interval;
+                qualifiers[index] = tell(instance, intervals[index]);
+            }
+            Ok(())
         })
     }
 }
@@ -76,7 +76,7 @@ pub unsafe extern "C" fn fmi3GetIntervalDecimal(
 /// # Safety
 /// A live handle, used by one thread at a time; all arrays hold `count` elements.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetIntervalFraction(
+pub unsafe extern "C-unwind" fn fmi3GetIntervalFraction(
     instance: fmi3Instance,
     references: *const fmi3ValueReference,
     count: usize,
@@ -91,12 +91,14 @@ pub unsafe extern "C" fn fmi3GetIntervalFraction(
             let counters = output(counters, count, "counters")?;
             let resolutions = output(resolutions, count, "resolutions")?;
             let qualifiers = output(qualifiers, count, "qualifiers")?;
-            let qualifier = qualifier(instance);
-            for_each(instance, references, |index, (interval, _)| {
-                (counters[index], resolutions[index]) = exact("interval", interval)?;
-                qualifiers[index] = qualifier;
-                Ok(())
-            })
+            require_clocks(instance, references)?;
+            for (index, reference) in references.iter().enumerate() {
+                let interval = instance.timing(*reference)?.interval;
+                (counters[index], resolutions[index]) =
+                    fraction(interval).ok_or(CallError::NoFraction { name: "interval", value: interval })?;
+                qualifiers[index] = tell(instance, interval);
+            }
+            Ok(())
         })
     }
 }
@@ -107,7 +109,7 @@ pub unsafe extern "C" fn fmi3GetIntervalFraction(
 /// # Safety
 /// A live handle, used by one thread at a time; both arrays hold `count` elements.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetShiftDecimal(
+pub unsafe extern "C-unwind" fn fmi3GetShiftDecimal(
     instance: fmi3Instance,
     references: *const fmi3ValueReference,
     count: usize,
@@ -118,10 +120,11 @@ pub unsafe extern "C" fn fmi3GetShiftDecimal(
         enter(instance, &may::GET_SHIFT_DECIMAL, |instance| {
             let references = input(references, count, "valueReferences")?;
             let shifts = output(shifts, count, "shifts")?;
-            for_each(instance, references, |index, (_, shift)| {
-                shifts[index] = shift;
-                Ok(())
-            })
+            require_clocks(instance, references)?;
+            for (shift, reference) in shifts.iter_mut().zip(references) {
+                *shift = instance.timing(*reference)?.shift;
+            }
+            Ok(())
         })
     }
 }
@@ -131,7 +134,7 @@ pub unsafe extern "C" fn fmi3GetShiftDecimal(
 /// # Safety
 /// A live handle, used by one thread at a time; all arrays hold `count` elements.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetShiftFraction(
+pub unsafe extern "C-unwind" fn fmi3GetShiftFraction(
     instance: fmi3Instance,
     references: *const fmi3ValueReference,
     count: usize,
@@ -144,35 +147,71 @@ pub unsafe extern "C" fn fmi3GetShiftFraction(
             let references = input(references, count, "valueReferences")?;
             let counters = output(counters, count, "counters")?;
             let resolutions = output(resolutions, count, "resolutions")?;
-            for_each(instance, references, |index, (_, shift)| {
-                (counters[index], resolutions[index]) = exact("shift", shift)?;
-                Ok(())
-            })
+            require_clocks(instance, references)?;
+            for (index, reference) in references.iter().enumerate() {
+                let timing = instance.timing(*reference)?;
+                (counters[index], resolutions[index]) = timing
+                    .shift_fraction
+                    .ok_or(CallError::NoFraction { name: "shift", value: timing.shift })?;
+            }
+            Ok(())
         })
     }
 }
 
-/// Hands interval and shift of each clock to `take`, with the place of the clock in the list.
-fn for_each(
-    instance: &mut Instance,
-    references: &[u32],
-    mut take: impl FnMut(usize, (f64, f64)) -> Result<(), CallError>,
-) -> Result<(), CallError> {
-    // All or, when one is refused, none.
-    for reference in references {
-        instance.interval_and_shift(*reference)?;
+/// Sets the intervals \[s\] of input clocks, which is to set the parameter sample_time.
+///
+/// # Safety
+/// A live handle, used by one thread at a time; both arrays hold `count` elements.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn fmi3SetIntervalDecimal(
+    instance: fmi3Instance,
+    references: *const fmi3ValueReference,
+    count: usize,
+    intervals: *const fmi3Float64,
+) -> fmi3Status {
+    // SAFETY: the caller's promise.
+    unsafe {
+        enter(instance, &may::SET_INTERVAL_DECIMAL, |instance| {
+            let references = input(references, count, "valueReferences")?;
+            let intervals = input(intervals, count, "intervals")?;
+            instance.set_intervals(references, intervals.iter().copied())
+        })
     }
-    for (index, reference) in references.iter().enumerate() {
-        take(index, instance.interval_and_shift(*reference)?)?;
-    }
-    Ok(())
 }
 
-/// The interval may change until the end of initialisation.
-fn qualifier(instance: &Instance) -> fmi3IntervalQualifier {
-    if instance.phase == Phase::InitializationMode { FMI3_INTERVAL_CHANGED } else { FMI3_INTERVAL_UNCHANGED }
+/// As [`fmi3SetIntervalDecimal`], as fractions of a second.
+///
+/// # Safety
+/// A live handle, used by one thread at a time; all arrays hold `count` elements.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn fmi3SetIntervalFraction(
+    instance: fmi3Instance,
+    references: *const fmi3ValueReference,
+    count: usize,
+    counters: *const u64,
+    resolutions: *const u64,
+) -> fmi3Status {
+    // SAFETY: the caller's promise.
+    unsafe {
+        enter(instance, &may::SET_INTERVAL_FRACTION, |instance| {
+            let references = input(references, count, "valueReferences")?;
+            let counters = input(counters, count, "counters")?;
+            let resolutions = input(resolutions, count, "resolutions")?;
+            // A resolution of 0 makes an infinite interval or none, which the range of sample_time refuses.
+            let seconds = |(counter, resolution): (&u64, &u64)| *counter as f64 / *resolution as f64;
+            instance.set_intervals(references, counters.iter().zip(resolutions).map(seconds))
+        })
+    }
 }
 
-fn exact(name: &'static str, value: f64) -> Result<(u64, u64), CallError> {
-    fraction(value).ok_or(CallError::NoFraction { name, value })
+/// All or, when one is refused, none.
+fn require_clocks(instance: &mut Instance, references: &[u32]) -> Result<(), CallError> {
+    references.iter().try_for_each(|reference| instance.timing(*reference).map(drop))
+}
+
+/// The importer is told the interval \[s\] of `tick`: whether it is news (FMI 3.0.2, section 2.2.9.4).
+fn tell(instance: &mut Instance, interval: f64) -> fmi3IntervalQualifier {
+    let told = core::mem::replace(&mut instance.clocks.told_interval, interval);
+    if told == interval { FMI3_INTERVAL_UNCHANGED } else { FMI3_INTERVAL_CHANGED }
 }

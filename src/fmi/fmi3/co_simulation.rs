@@ -16,7 +16,7 @@ use crate::fmi::{CallError, Instance};
 /// A live handle, used by one thread at a time; the results are null or writable; the importer's callback calls nothing
 /// but what intermediate update mode allows.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3DoStep(
+pub unsafe extern "C-unwind" fn fmi3DoStep(
     instance: fmi3Instance,
     current_communication_point: fmi3Float64,
     communication_step_size: fmi3Float64,

@@ -16,7 +16,7 @@ fn require_length(argument: &'static str, got: usize, expected: usize) -> Result
 /// # Safety
 /// A live handle, used by one thread at a time; the arrays hold as many elements as the counts say.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetDirectionalDerivative(
+pub unsafe extern "C-unwind" fn fmi3GetDirectionalDerivative(
     instance: fmi3Instance,
     unknowns: *const fmi3ValueReference,
     unknown_count: usize,
@@ -47,7 +47,7 @@ pub unsafe extern "C" fn fmi3GetDirectionalDerivative(
 /// # Safety
 /// A live handle, used by one thread at a time; the arrays hold as many elements as the counts say.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetAdjointDerivative(
+pub unsafe extern "C-unwind" fn fmi3GetAdjointDerivative(
     instance: fmi3Instance,
     unknowns: *const fmi3ValueReference,
     unknown_count: usize,
@@ -78,7 +78,7 @@ pub unsafe extern "C" fn fmi3GetAdjointDerivative(
 /// # Safety
 /// A live handle, used by one thread at a time; the arrays hold as many elements as the counts say.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetOutputDerivatives(
+pub unsafe extern "C-unwind" fn fmi3GetOutputDerivatives(
     instance: fmi3Instance,
     references: *const fmi3ValueReference,
     count: usize,

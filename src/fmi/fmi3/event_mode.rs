@@ -8,7 +8,7 @@ use crate::fmi::boundary::{enter, report};
 /// # Safety
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3EnterEventMode(instance: fmi3Instance) -> fmi3Status {
+pub unsafe extern "C-unwind" fn fmi3EnterEventMode(instance: fmi3Instance) -> fmi3Status {
     // SAFETY: the caller's promise.
     unsafe { enter(instance, &may::ENTER_EVENT_MODE, |instance| instance.enter_event_mode()) }
 }
@@ -18,7 +18,7 @@ pub unsafe extern "C" fn fmi3EnterEventMode(instance: fmi3Instance) -> fmi3Statu
 /// # Safety
 /// A live handle, used by one thread at a time; the results are null or writable.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3UpdateDiscreteStates(
+pub unsafe extern "C-unwind" fn fmi3UpdateDiscreteStates(
     instance: fmi3Instance,
     discrete_states_need_update: *mut fmi3Boolean,
     terminate_simulation: *mut fmi3Boolean,
@@ -42,10 +42,20 @@ pub unsafe extern "C" fn fmi3UpdateDiscreteStates(
     }
 }
 
+/// Ignored, since providesEvaluateDiscreteStates is false (FMI 3.0.2, section 2.3.5).
+///
 /// # Safety
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3EnterStepMode(instance: fmi3Instance) -> fmi3Status {
+pub unsafe extern "C-unwind" fn fmi3EvaluateDiscreteStates(instance: fmi3Instance) -> fmi3Status {
+    // SAFETY: the caller's promise.
+    unsafe { enter(instance, &may::EVALUATE_DISCRETE_STATES, |_| Ok(())) }
+}
+
+/// # Safety
+/// A live handle, used by one thread at a time.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn fmi3EnterStepMode(instance: fmi3Instance) -> fmi3Status {
     // SAFETY: the caller's promise.
     unsafe { enter(instance, &may::ENTER_STEP_MODE, |instance| instance.enter_step_mode()) }
 }

@@ -19,6 +19,22 @@ const SETTABLE: &[Phase] = &[
     ClockActivationMode,
     Terminated,
 ];
+/// The same, and in the importer's callbacks within a step and an activation. Those may end by an exception or a jump,
+/// after which the importer has but these ways to an instance that it can use: the standard, which knows no exceptions,
+/// leaves none.
+const SETTABLE_ANEW: &[Phase] = &[
+    Instantiated,
+    InitializationMode,
+    ConfigurationMode,
+    ReconfigurationMode,
+    EventMode,
+    ContinuousTimeMode,
+    StepMode,
+    ClockActivationMode,
+    IntermediateUpdateMode,
+    ClockUpdateMode,
+    Terminated,
+];
 const READABLE: &[Phase] = &[
     Instantiated,
     InitializationMode,
@@ -52,20 +68,36 @@ const WRITABLE_DISCRETE: &[Phase] = &[
     ClockActivationMode,
 ];
 const INITIALIZED: &[Phase] = &[EventMode, ContinuousTimeMode, StepMode, ClockActivationMode];
-/// Clocks tick in Event Mode and around their activation only, never in Step Mode. Clock Update Mode is for importers
-/// that want to be called back; those that do not may ask after the activation.
-const CLOCKED: &[Phase] = &[EventMode, ClockActivationMode, ClockUpdateMode];
-const SCHEDULABLE: &[Phase] = &[InitializationMode, EventMode, ClockActivationMode];
+/// Clocks tick in Event Mode and around their activation only, never in Step Mode (section 2.2.9.2, table of clock
+/// types).
+const CLOCKED: &[Phase] = &[EventMode, ClockUpdateMode];
+/// Of fixed clocks (sections 2.2.9.2 and 2.3.5).
+const INTERVAL_READABLE: &[Phase] = &[InitializationMode, EventMode];
 const EVALUABLE: &[Phase] = &[InitializationMode, EventMode, ContinuousTimeMode, Terminated];
 const DIFFERENTIABLE: &[Phase] = &[InitializationMode, EventMode, ContinuousTimeMode, StepMode, Terminated];
 
-pub const SET_DEBUG_LOGGING: Function = Function::new("fmi3SetDebugLogging", READABLE);
+pub const SET_DEBUG_LOGGING: Function = Function::new(
+    "fmi3SetDebugLogging",
+    &[
+        Instantiated,
+        InitializationMode,
+        ConfigurationMode,
+        ReconfigurationMode,
+        EventMode,
+        ContinuousTimeMode,
+        StepMode,
+        ClockActivationMode,
+        ClockUpdateMode,
+        IntermediateUpdateMode,
+        Terminated,
+    ],
+);
 pub const ENTER_INITIALIZATION_MODE: Function = Function::new("fmi3EnterInitializationMode", &[Instantiated]);
 pub const EXIT_INITIALIZATION_MODE: Function =
     Function::new("fmi3ExitInitializationMode", &[InitializationMode]);
 pub const ENTER_EVENT_MODE: Function = Function::new("fmi3EnterEventMode", &[ContinuousTimeMode, StepMode]);
 pub const TERMINATE: Function = Function::new("fmi3Terminate", INITIALIZED);
-pub const RESET: Function = Function::new("fmi3Reset", SETTABLE);
+pub const RESET: Function = Function::new("fmi3Reset", SETTABLE_ANEW);
 
 pub const GET_FLOAT32: Function = Function::new("fmi3GetFloat32", READABLE);
 pub const GET_FLOAT64: Function = Function::new("fmi3GetFloat64", READABLE);
@@ -100,7 +132,7 @@ pub const GET_NUMBER_OF_VARIABLE_DEPENDENCIES: Function =
     Function::new("fmi3GetNumberOfVariableDependencies", SETTABLE);
 pub const GET_VARIABLE_DEPENDENCIES: Function = Function::new("fmi3GetVariableDependencies", SETTABLE);
 pub const GET_FMU_STATE: Function = Function::new("fmi3GetFMUState", SETTABLE);
-pub const SET_FMU_STATE: Function = Function::new("fmi3SetFMUState", SETTABLE);
+pub const SET_FMU_STATE: Function = Function::new("fmi3SetFMUState", SETTABLE_ANEW);
 pub const FREE_FMU_STATE: Function = Function::new("fmi3FreeFMUState", SETTABLE);
 pub const SERIALIZED_FMU_STATE_SIZE: Function = Function::new("fmi3SerializedFMUStateSize", SETTABLE);
 pub const SERIALIZE_FMU_STATE: Function = Function::new("fmi3SerializeFMUState", SETTABLE);
@@ -113,12 +145,13 @@ pub const ENTER_CONFIGURATION_MODE: Function =
     Function::new("fmi3EnterConfigurationMode", &[Instantiated, EventMode, StepMode, ClockActivationMode]);
 pub const EXIT_CONFIGURATION_MODE: Function =
     Function::new("fmi3ExitConfigurationMode", &[ConfigurationMode, ReconfigurationMode]);
-pub const GET_INTERVAL_DECIMAL: Function = Function::new("fmi3GetIntervalDecimal", SCHEDULABLE);
-pub const GET_INTERVAL_FRACTION: Function = Function::new("fmi3GetIntervalFraction", SCHEDULABLE);
+pub const GET_INTERVAL_DECIMAL: Function = Function::new("fmi3GetIntervalDecimal", INTERVAL_READABLE);
+pub const GET_INTERVAL_FRACTION: Function = Function::new("fmi3GetIntervalFraction", INTERVAL_READABLE);
 pub const GET_SHIFT_DECIMAL: Function = Function::new("fmi3GetShiftDecimal", &[InitializationMode]);
 pub const GET_SHIFT_FRACTION: Function = Function::new("fmi3GetShiftFraction", &[InitializationMode]);
-pub const SET_INTERVAL_DECIMAL: Function = Function::new("fmi3SetIntervalDecimal", SCHEDULABLE);
-pub const SET_INTERVAL_FRACTION: Function = Function::new("fmi3SetIntervalFraction", SCHEDULABLE);
+/// Of fixed clocks in Initialization Mode only (section 2.2.9.2, table of clock types).
+pub const SET_INTERVAL_DECIMAL: Function = Function::new("fmi3SetIntervalDecimal", &[InitializationMode]);
+pub const SET_INTERVAL_FRACTION: Function = Function::new("fmi3SetIntervalFraction", &[InitializationMode]);
 pub const SET_SHIFT_DECIMAL: Function = Function::new("fmi3SetShiftDecimal", &[InitializationMode]);
 pub const SET_SHIFT_FRACTION: Function = Function::new("fmi3SetShiftFraction", &[InitializationMode]);
 pub const EVALUATE_DISCRETE_STATES: Function = Function::new("fmi3EvaluateDiscreteStates", &[EventMode]);

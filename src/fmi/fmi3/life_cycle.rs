@@ -7,8 +7,8 @@ use super::legality as may;
 use super::types::*;
 use crate::fmi::Interface;
 use crate::fmi::boundary::{create, enter, free, input};
-use crate::fmi::instance::instantiate;
-use crate::fmi::intermediate_update::IntermediateUpdate;
+use crate::fmi::instantiation::Request;
+use crate::fmi::intermediate_update::{IntermediateUpdate, RegisteredVariables};
 use crate::fmi::log::{Callback, c_string, set_debug_logging};
 
 /// "3.0".
@@ -22,7 +22,7 @@ pub extern "C" fn fmi3GetVersion() -> *const c_char {
 /// # Safety
 /// As the standard demands: a live handle used by one thread at a time, `categories` with `count` C strings.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SetDebugLogging(
+pub unsafe extern "C-unwind" fn fmi3SetDebugLogging(
     instance: fmi3Instance,
     logging_on: fmi3Boolean,
     count: usize,
@@ -44,9 +44,10 @@ pub unsafe extern "C" fn fmi3SetDebugLogging(
 /// events are wanted of a unit that has none.
 ///
 /// # Safety
-/// Strings are null or end with NUL; the callbacks stay callable while the instance lives.
+/// Strings are null or end with NUL; `required_intermediate_variables` is null or holds as many references as said; the
+/// callbacks stay callable while the instance lives.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
+pub unsafe extern "C-unwind" fn fmi3InstantiateCoSimulation(
     instance_name: fmi3String,
     token: fmi3String,
     _resource_path: fmi3String,
@@ -54,31 +55,43 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
     logging_on: fmi3Boolean,
     event_mode_used: fmi3Boolean,
     early_return_allowed: fmi3Boolean,
-    _required_intermediate_variables: *const fmi3ValueReference,
+    required_intermediate_variables: *const fmi3ValueReference,
     required_intermediate_variable_count: usize,
     environment: fmi3InstanceEnvironment,
     log_message: Option<fmi3LogMessageCallback>,
     intermediate_update: Option<fmi3IntermediateUpdateCallback>,
 ) -> fmi3Instance {
-    // SAFETY: the caller's promise.
-    let (name, token) = unsafe { (c_string(instance_name), c_string(token)) };
-    let log = callback(log_message, environment);
-    let function = "fmi3InstantiateCoSimulation";
     let may_return_early = early_return_allowed != FMI3_FALSE;
     let interface = match event_mode_used {
         FMI3_FALSE => Interface::CoSimulation,
         _ => Interface::CoSimulationWithEvents { may_return_early },
     };
-    create(|| {
-        let mut instance = instantiate(function, name, token, log, logging_on != FMI3_FALSE, Ok(interface))?;
-        // An importer without intermediate variables does not intend to use intermediate update (section 2.3.1), but
-        // has it early return to ask for.
-        let is_of_use = required_intermediate_variable_count > 0 || may_return_early;
-        instance.intermediate_update = intermediate_update
-            .filter(|_| is_of_use)
-            .map(|callback| IntermediateUpdate { callback, environment, may_return_early });
-        Some(instance)
-    })
+    // SAFETY: the caller's promise.
+    unsafe {
+        let request = Request {
+            function: "fmi3InstantiateCoSimulation",
+            name: c_string(instance_name),
+            token: c_string(token),
+            callback: callback(log_message, environment),
+            logging_on: logging_on != FMI3_FALSE,
+            interface: Ok(interface),
+        };
+        let references = input(
+            required_intermediate_variables,
+            required_intermediate_variable_count,
+            "requiredIntermediateVariables",
+        );
+        create(&request, |instance| {
+            let registered = RegisteredVariables::new(references?, instance.variables.len())?;
+            // An importer without intermediate variables does not intend to use intermediate update (section 2.3.1),
+            // but has it early return to ask for.
+            let is_of_use = required_intermediate_variable_count > 0 || may_return_early;
+            instance.intermediate_update = intermediate_update
+                .filter(|_| is_of_use)
+                .map(|callback| IntermediateUpdate { callback, environment, may_return_early, registered });
+            Ok(())
+        })
+    }
 }
 
 /// Makes a model-exchange instance of the unit that `token` selects; null and a log message if there is none or if it
@@ -87,7 +100,7 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
 /// # Safety
 /// As [`fmi3InstantiateCoSimulation`].
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3InstantiateModelExchange(
+pub unsafe extern "C-unwind" fn fmi3InstantiateModelExchange(
     instance_name: fmi3String,
     token: fmi3String,
     _resource_path: fmi3String,
@@ -97,12 +110,17 @@ pub unsafe extern "C" fn fmi3InstantiateModelExchange(
     log_message: Option<fmi3LogMessageCallback>,
 ) -> fmi3Instance {
     // SAFETY: the caller's promise.
-    let (name, token) = unsafe { (c_string(instance_name), c_string(token)) };
-    let callback = callback(log_message, environment);
-    let function = "fmi3InstantiateModelExchange";
-    create(|| {
-        instantiate(function, name, token, callback, logging_on != FMI3_FALSE, Ok(Interface::ModelExchange))
-    })
+    unsafe {
+        let request = Request {
+            function: "fmi3InstantiateModelExchange",
+            name: c_string(instance_name),
+            token: c_string(token),
+            callback: callback(log_message, environment),
+            logging_on: logging_on != FMI3_FALSE,
+            interface: Ok(Interface::ModelExchange),
+        };
+        create(&request, |_| Ok(()))
+    }
 }
 
 /// Makes an instance of the sampled unit that `token` selects for a scheduler; null and a log message if there is none.
@@ -110,7 +128,7 @@ pub unsafe extern "C" fn fmi3InstantiateModelExchange(
 /// # Safety
 /// As [`fmi3InstantiateCoSimulation`].
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3InstantiateScheduledExecution(
+pub unsafe extern "C-unwind" fn fmi3InstantiateScheduledExecution(
     instance_name: fmi3String,
     token: fmi3String,
     _resource_path: fmi3String,
@@ -123,15 +141,20 @@ pub unsafe extern "C" fn fmi3InstantiateScheduledExecution(
     _unlock_preemption: Option<fmi3UnlockPreemptionCallback>,
 ) -> fmi3Instance {
     // SAFETY: the caller's promise.
-    let (name, token) = unsafe { (c_string(instance_name), c_string(token)) };
-    let log = callback(log_message, environment);
-    let function = "fmi3InstantiateScheduledExecution";
-    create(|| {
-        let interface = Ok(Interface::ScheduledExecution);
-        let mut instance = instantiate(function, name, token, log, logging_on != FMI3_FALSE, interface)?;
-        instance.clock_update = clock_update.map(|callback| (callback, environment));
-        Some(instance)
-    })
+    unsafe {
+        let request = Request {
+            function: "fmi3InstantiateScheduledExecution",
+            name: c_string(instance_name),
+            token: c_string(token),
+            callback: callback(log_message, environment),
+            logging_on: logging_on != FMI3_FALSE,
+            interface: Ok(Interface::ScheduledExecution),
+        };
+        create(&request, |instance| {
+            instance.clock_update = clock_update.map(|callback| (callback, environment));
+            Ok(())
+        })
+    }
 }
 
 fn callback(log_message: Option<fmi3LogMessageCallback>, environment: fmi3InstanceEnvironment) -> Callback {
@@ -153,7 +176,7 @@ pub unsafe extern "C" fn fmi3FreeInstance(instance: fmi3Instance) {
 /// # Safety
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3EnterInitializationMode(
+pub unsafe extern "C-unwind" fn fmi3EnterInitializationMode(
     instance: fmi3Instance,
     _tolerance_defined: fmi3Boolean,
     _tolerance: fmi3Float64,
@@ -173,7 +196,7 @@ pub unsafe extern "C" fn fmi3EnterInitializationMode(
 /// # Safety
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3ExitInitializationMode(instance: fmi3Instance) -> fmi3Status {
+pub unsafe extern "C-unwind" fn fmi3ExitInitializationMode(instance: fmi3Instance) -> fmi3Status {
     // SAFETY: the caller's promise.
     unsafe { enter(instance, &may::EXIT_INITIALIZATION_MODE, |instance| instance.exit_initialization_mode()) }
 }
@@ -181,7 +204,7 @@ pub unsafe extern "C" fn fmi3ExitInitializationMode(instance: fmi3Instance) -> f
 /// # Safety
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3Terminate(instance: fmi3Instance) -> fmi3Status {
+pub unsafe extern "C-unwind" fn fmi3Terminate(instance: fmi3Instance) -> fmi3Status {
     // SAFETY: the caller's promise.
     unsafe { enter(instance, &may::TERMINATE, |instance| instance.terminate()) }
 }
@@ -191,7 +214,7 @@ pub unsafe extern "C" fn fmi3Terminate(instance: fmi3Instance) -> fmi3Status {
 /// # Safety
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3Reset(instance: fmi3Instance) -> fmi3Status {
+pub unsafe extern "C-unwind" fn fmi3Reset(instance: fmi3Instance) -> fmi3Status {
     // SAFETY: the caller's promise.
     unsafe { enter(instance, &may::RESET, |instance| instance.reset()) }
 }

@@ -8,7 +8,7 @@ use crate::fmi::boundary::{enter, input, output, report};
 /// # Safety
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3EnterContinuousTimeMode(instance: fmi3Instance) -> fmi3Status {
+pub unsafe extern "C-unwind" fn fmi3EnterContinuousTimeMode(instance: fmi3Instance) -> fmi3Status {
     // SAFETY: the caller's promise.
     unsafe {
         enter(instance, &may::ENTER_CONTINUOUS_TIME_MODE, |instance| instance.enter_continuous_time_mode())
@@ -20,7 +20,7 @@ pub unsafe extern "C" fn fmi3EnterContinuousTimeMode(instance: fmi3Instance) -> 
 /// # Safety
 /// A live handle, used by one thread at a time; the results are null or writable.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3CompletedIntegratorStep(
+pub unsafe extern "C-unwind" fn fmi3CompletedIntegratorStep(
     instance: fmi3Instance,
     _no_set_fmu_state_prior_to_current_point: fmi3Boolean,
     enter_event_mode: *mut fmi3Boolean,
@@ -29,7 +29,7 @@ pub unsafe extern "C" fn fmi3CompletedIntegratorStep(
     // SAFETY: the caller's promise.
     unsafe {
         enter(instance, &may::COMPLETED_INTEGRATOR_STEP, |instance| {
-            instance.require_model_exchange()?;
+            instance.complete_integrator_step()?;
             report(enter_event_mode, FMI3_FALSE);
             report(terminate_simulation, FMI3_FALSE);
             Ok(())
@@ -40,7 +40,7 @@ pub unsafe extern "C" fn fmi3CompletedIntegratorStep(
 /// # Safety
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SetTime(instance: fmi3Instance, time: fmi3Float64) -> fmi3Status {
+pub unsafe extern "C-unwind" fn fmi3SetTime(instance: fmi3Instance, time: fmi3Float64) -> fmi3Status {
     // SAFETY: the caller's promise.
     unsafe { enter(instance, &may::SET_TIME, |instance| instance.set_time(time)) }
 }
@@ -48,7 +48,7 @@ pub unsafe extern "C" fn fmi3SetTime(instance: fmi3Instance, time: fmi3Float64) 
 /// # Safety
 /// A live handle, used by one thread at a time; `states` holds `count` elements.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SetContinuousStates(
+pub unsafe extern "C-unwind" fn fmi3SetContinuousStates(
     instance: fmi3Instance,
     states: *const fmi3Float64,
     count: usize,
@@ -67,7 +67,7 @@ macro_rules! vectors {
         /// # Safety
         /// A live handle, used by one thread at a time; `values` has room for `count` elements.
         #[unsafe(no_mangle)]
-        pub unsafe extern "C" fn $function(
+        pub unsafe extern "C-unwind" fn $function(
             instance: fmi3Instance,
             values: *mut fmi3Float64,
             count: usize,
@@ -93,7 +93,7 @@ macro_rules! counts {
         /// # Safety
         /// A live handle, used by one thread at a time; `count` is writable.
         #[unsafe(no_mangle)]
-        pub unsafe extern "C" fn $function(instance: fmi3Instance, count: *mut usize) -> fmi3Status {
+        pub unsafe extern "C-unwind" fn $function(instance: fmi3Instance, count: *mut usize) -> fmi3Status {
             // SAFETY: the caller's promise.
             unsafe {
                 enter(instance, &may::$rule, |instance| {

@@ -13,7 +13,7 @@ macro_rules! not_offered {
         /// # Safety
         /// A live handle, used by one thread at a time; the other arguments are not touched.
         #[unsafe(no_mangle)]
-        pub unsafe extern "C" fn $function(instance: fmi3Instance $(, $argument: $type)*) -> fmi3Status {
+        pub unsafe extern "C-unwind" fn $function(instance: fmi3Instance $(, $argument: $type)*) -> fmi3Status {
             // SAFETY: the caller's promise.
             unsafe { enter(instance, &may::$rule, |_| Err(CallError::NotOffered($because))) }
         }
@@ -34,20 +34,11 @@ not_offered! { "the unit has no structural parameters":
     ENTER_CONFIGURATION_MODE fmi3EnterConfigurationMode();
     EXIT_CONFIGURATION_MODE fmi3ExitConfigurationMode();
 }
-not_offered! { "the interval of a clock follows from sample_time":
-    SET_INTERVAL_DECIMAL fmi3SetIntervalDecimal(
-        _references: *const fmi3ValueReference, _count: usize, _intervals: *const fmi3Float64
-    );
-    SET_INTERVAL_FRACTION fmi3SetIntervalFraction(
-        _references: *const fmi3ValueReference, _count: usize, _counters: *const u64, _resolutions: *const u64
-    );
+not_offered! { "ticks are at multiples of sample_time, whenever the experiment starts":
     SET_SHIFT_DECIMAL fmi3SetShiftDecimal(
         _references: *const fmi3ValueReference, _count: usize, _shifts: *const fmi3Float64
     );
     SET_SHIFT_FRACTION fmi3SetShiftFraction(
         _references: *const fmi3ValueReference, _count: usize, _counters: *const u64, _resolutions: *const u64
     );
-}
-not_offered! { "providesEvaluateDiscreteStates = false":
-    EVALUATE_DISCRETE_STATES fmi3EvaluateDiscreteStates();
 }

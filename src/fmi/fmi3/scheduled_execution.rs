@@ -12,7 +12,7 @@ use crate::fmi::boundary::enter;
 /// # Safety
 /// A live handle, used by one thread at a time; the importer's callback calls nothing but what clock update mode allows.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3ActivateModelPartition(
+pub unsafe extern "C-unwind" fn fmi3ActivateModelPartition(
     instance: fmi3Instance,
     clock: fmi3ValueReference,
     activation_time: fmi3Float64,

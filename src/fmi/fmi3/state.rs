@@ -11,7 +11,10 @@ use crate::fmi::state_handle::{deserialise_state, free_state, get_state, state_b
 /// # Safety
 /// A live handle, used by one thread at a time; `state` is null or points to null or to a living state.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetFMUState(instance: fmi3Instance, state: *mut fmi3FMUState) -> fmi3Status {
+pub unsafe extern "C-unwind" fn fmi3GetFMUState(
+    instance: fmi3Instance,
+    state: *mut fmi3FMUState,
+) -> fmi3Status {
     // SAFETY: the caller's promise.
     unsafe { enter(instance, &may::GET_FMU_STATE, |instance| get_state(instance, state)) }
 }
@@ -21,7 +24,7 @@ pub unsafe extern "C" fn fmi3GetFMUState(instance: fmi3Instance, state: *mut fmi
 /// # Safety
 /// A live handle, used by one thread at a time; `state` is null or a living state.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SetFMUState(instance: fmi3Instance, state: fmi3FMUState) -> fmi3Status {
+pub unsafe extern "C-unwind" fn fmi3SetFMUState(instance: fmi3Instance, state: fmi3FMUState) -> fmi3Status {
     // SAFETY: the caller's promise.
     unsafe { enter(instance, &may::SET_FMU_STATE, |instance| Ok(instance.restore(state_behind(state)?)?)) }
 }
@@ -31,7 +34,10 @@ pub unsafe extern "C" fn fmi3SetFMUState(instance: fmi3Instance, state: fmi3FMUS
 /// # Safety
 /// A live handle, used by one thread at a time; `state` is null or points to null or to a living state.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3FreeFMUState(instance: fmi3Instance, state: *mut fmi3FMUState) -> fmi3Status {
+pub unsafe extern "C-unwind" fn fmi3FreeFMUState(
+    instance: fmi3Instance,
+    state: *mut fmi3FMUState,
+) -> fmi3Status {
     // SAFETY: the caller's promise.
     unsafe { enter(instance, &may::FREE_FMU_STATE, |_| free_state(state)) }
 }
@@ -41,7 +47,7 @@ pub unsafe extern "C" fn fmi3FreeFMUState(instance: fmi3Instance, state: *mut fm
 /// # Safety
 /// A live handle, used by one thread at a time; `state` is null or a living state, `size` null or writable.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SerializedFMUStateSize(
+pub unsafe extern "C-unwind" fn fmi3SerializedFMUStateSize(
     instance: fmi3Instance,
     state: fmi3FMUState,
     size: *mut usize,
@@ -60,7 +66,7 @@ pub unsafe extern "C" fn fmi3SerializedFMUStateSize(
 /// # Safety
 /// A live handle, used by one thread at a time; `state` is null or a living state, `bytes` holds `size` bytes.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SerializeFMUState(
+pub unsafe extern "C-unwind" fn fmi3SerializeFMUState(
     instance: fmi3Instance,
     state: fmi3FMUState,
     bytes: *mut fmi3Byte,
@@ -80,7 +86,7 @@ pub unsafe extern "C" fn fmi3SerializeFMUState(
 /// A live handle, used by one thread at a time; `bytes` holds `size` bytes, `state` is null or points to null or to a
 /// living state.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3DeserializeFMUState(
+pub unsafe extern "C-unwind" fn fmi3DeserializeFMUState(
     instance: fmi3Instance,
     bytes: *const fmi3Byte,
     size: usize,

@@ -26,14 +26,15 @@ pub const FMI3_INTERVAL_CHANGED: fmi3IntervalQualifier = 2;
 pub const FMI3_TRUE: fmi3Boolean = 1;
 pub const FMI3_FALSE: fmi3Boolean = 0;
 
-pub type fmi3LogMessageCallback = unsafe extern "C" fn(
+/// The callbacks below may throw: what comes through goes on to the importer.
+pub type fmi3LogMessageCallback = unsafe extern "C-unwind" fn(
     environment: fmi3InstanceEnvironment,
     status: fmi3Status,
     category: fmi3String,
     message: fmi3String,
 );
-pub type fmi3ClockUpdateCallback = unsafe extern "C" fn(environment: fmi3InstanceEnvironment);
-pub type fmi3IntermediateUpdateCallback = unsafe extern "C" fn(
+pub type fmi3ClockUpdateCallback = unsafe extern "C-unwind" fn(environment: fmi3InstanceEnvironment);
+pub type fmi3IntermediateUpdateCallback = unsafe extern "C-unwind" fn(
     environment: fmi3InstanceEnvironment,
     time: fmi3Float64,
     variable_set_requested: fmi3Boolean,

@@ -4,6 +4,7 @@
 use super::legality as may;
 use super::types::*;
 use crate::fmi::CallError;
+use crate::fmi::FmiVersion;
 use crate::fmi::access::DataType;
 use crate::fmi::boundary::{enter, input, output};
 use crate::unit::variable::Kind;
@@ -21,7 +22,7 @@ macro_rules! accessors {
         /// # Safety
         /// A live handle, used by one thread at a time; the arrays hold as many elements as the counts say.
         #[unsafe(no_mangle)]
-        pub unsafe extern "C" fn $get(
+        pub unsafe extern "C-unwind" fn $get(
             instance: fmi3Instance,
             references: *const fmi3ValueReference,
             count: usize,
@@ -35,7 +36,7 @@ macro_rules! accessors {
                     let references = input(references, count, "valueReferences")?;
                     let values = output(values, count, "values")?;
                     instance.get(
-                        &DataType { name: $name, carries: $carries, has_clocks: true },
+                        &DataType { name: $name, carries: $carries, standard: FmiVersion::Three },
                         references,
                         values,
                         $from,
@@ -47,7 +48,7 @@ macro_rules! accessors {
         /// # Safety
         /// A live handle, used by one thread at a time; the arrays hold as many elements as the counts say.
         #[unsafe(no_mangle)]
-        pub unsafe extern "C" fn $set(
+        pub unsafe extern "C-unwind" fn $set(
             instance: fmi3Instance,
             references: *const fmi3ValueReference,
             count: usize,
@@ -61,7 +62,7 @@ macro_rules! accessors {
                     let references = input(references, count, "valueReferences")?;
                     let values = input(values, count, "values")?;
                     instance.set(
-                        &DataType { name: $name, carries: $carries, has_clocks: true },
+                        &DataType { name: $name, carries: $carries, standard: FmiVersion::Three },
                         references,
                         values,
                         $into,
@@ -98,12 +99,12 @@ absent!("a UInt32", fmi3GetUInt32 GET_UINT32, fmi3SetUInt32 SET_UINT32, u32, 0);
 absent!("a UInt64", fmi3GetUInt64 GET_UINT64, fmi3SetUInt64 SET_UINT64, u64, 0);
 absent!("a String", fmi3GetString GET_STRING, fmi3SetString SET_STRING, fmi3String, core::ptr::null());
 
-const BINARY: DataType = DataType { name: "a Binary", carries: |_| false, has_clocks: true };
+const BINARY: DataType = DataType { name: "a Binary", carries: |_| false, standard: FmiVersion::Three };
 
 /// # Safety
 /// A live handle, used by one thread at a time; the arrays hold as many elements as the counts say.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetBinary(
+pub unsafe extern "C-unwind" fn fmi3GetBinary(
     instance: fmi3Instance,
     references: *const fmi3ValueReference,
     count: usize,
@@ -124,7 +125,7 @@ pub unsafe extern "C" fn fmi3GetBinary(
 /// # Safety
 /// A live handle, used by one thread at a time; the arrays hold as many elements as the counts say.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SetBinary(
+pub unsafe extern "C-unwind" fn fmi3SetBinary(
     instance: fmi3Instance,
     references: *const fmi3ValueReference,
     count: usize,

@@ -141,8 +141,8 @@ unsafe extern "C" {
     fn free(object: *mut c_void);
 }
 
-/// Collects a message; the arguments after the format string stay unread.
-unsafe extern "C" fn log(
+/// Collects a message; the arguments after the format string stay unread. Never unwinds, whatever its type allows.
+unsafe extern "C-unwind" fn log(
     environment: fmi2ComponentEnvironment,
     _instance_name: fmi2String,
     status: fmi2Status,
@@ -159,7 +159,7 @@ unsafe extern "C" fn log(
 
 fn variadic_logger() -> fmi2CallbackLogger {
     type FixedArguments =
-        unsafe extern "C" fn(fmi2ComponentEnvironment, fmi2String, fmi2Status, fmi2String, fmi2String);
+        unsafe extern "C-unwind" fn(fmi2ComponentEnvironment, fmi2String, fmi2Status, fmi2String, fmi2String);
     // SAFETY: stable Rust cannot define a variadic function. On the C ABIs of the supported platforms (System V
     // x86-64, Windows x64, AAPCS64 and Apple's variant of it) the named arguments of a variadic call, all of them
     // pointers and one int here, lie where those of an ordinary call lie, and the caller cleans up the rest.

@@ -171,7 +171,8 @@ impl Functions {
     }
 }
 
-unsafe extern "C" fn log(
+/// Collects a message and never unwinds, whatever its type allows.
+unsafe extern "C-unwind" fn log(
     environment: fmi3InstanceEnvironment,
     status: fmi3Status,
     category: fmi3String,

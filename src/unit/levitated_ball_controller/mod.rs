@@ -165,10 +165,6 @@ impl Unit for LevitatedBallController {
         self.clock.may_stand_where_it_does(self.values[SAMPLE_TIME])
             && self.observer.belongs_to(&observer_settings(&self.values))
     }
-
-    fn boxed_clone(&self) -> Box<dyn Unit> {
-        Box::new(self.clone())
-    }
 }
 
 impl SampledUnit for LevitatedBallController {

@@ -294,10 +294,6 @@ impl Unit for LevitatedBallPlant {
         self.ball == ball(&self.values)
             && check_finite(&self.ball, &State { position, velocity, flux }).is_ok()
     }
-
-    fn boxed_clone(&self) -> Box<dyn Unit> {
-        Box::new(self.clone())
-    }
 }
 
 fn ball(values: &[f64; COUNT]) -> LevitatedBall {

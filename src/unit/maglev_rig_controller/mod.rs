@@ -199,10 +199,6 @@ impl Unit for MaglevRigController {
             && self.reference_filter == ReferenceFilter::new(values[REFERENCE_FILTER], values[SAMPLE_TIME])
             && self.law == law(values)
     }
-
-    fn boxed_clone(&self) -> Box<dyn Unit> {
-        Box::new(self.clone())
-    }
 }
 
 impl SampledUnit for MaglevRigController {

@@ -347,10 +347,6 @@ impl Unit for MaglevRigPlant {
         let [position, velocity] = self.state();
         check_finite(&State { position, velocity }).is_ok()
     }
-
-    fn boxed_clone(&self) -> Box<dyn Unit> {
-        Box::new(self.clone())
-    }
 }
 
 #[cold]

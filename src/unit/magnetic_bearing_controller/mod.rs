@@ -166,10 +166,6 @@ impl Unit for MagneticBearingController {
             && self.observer.settings() == observer_settings(&self.values)
             && self.law == law(&self.values)
     }
-
-    fn boxed_clone(&self) -> Box<dyn Unit> {
-        Box::new(self.clone())
-    }
 }
 
 impl SampledUnit for MagneticBearingController {

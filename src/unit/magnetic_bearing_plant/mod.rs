@@ -233,10 +233,6 @@ impl Unit for MagneticBearingPlant {
     fn continuous(&mut self) -> Option<&mut dyn ContinuousUnit> {
         Some(self)
     }
-
-    fn boxed_clone(&self) -> Box<dyn Unit> {
-        Box::new(self.clone())
-    }
 }
 
 fn check_finite(state: &State) -> Result<(), UnitError> {

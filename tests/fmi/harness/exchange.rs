@@ -120,6 +120,33 @@ impl Component {
         }
     }
 
+    /// No unit has step events, nor ends a simulation.
+    pub fn complete_integrator_step(&self) -> i32 {
+        // SAFETY: a live handle, room for the results.
+        let (status, results) = unsafe {
+            match self.standard {
+                Standard::Fmi2 => {
+                    let mut results = [7; 2];
+                    let [event, end] = &mut results;
+                    (
+                        fmi2CompletedIntegratorStep(self.handle, 1, event, end),
+                        results.map(|result| result != 0),
+                    )
+                }
+                Standard::Fmi3 => {
+                    let mut results = [7; 2];
+                    let [event, end] = &mut results;
+                    (
+                        fmi3CompletedIntegratorStep(self.handle, 1, event, end),
+                        results.map(|result| result != 0),
+                    )
+                }
+            }
+        };
+        assert!(status != OK || results == [false; 2]);
+        status
+    }
+
     pub fn set_time(&self, time: f64) -> i32 {
         // SAFETY: a live handle.
         unsafe {
@@ -169,8 +196,8 @@ impl Component {
     fn vector(
         &self,
         count: usize,
-        fmi2: unsafe extern "C" fn(*mut c_void, *mut f64, usize) -> i32,
-        fmi3: unsafe extern "C" fn(*mut c_void, *mut f64, usize) -> i32,
+        fmi2: unsafe extern "C-unwind" fn(*mut c_void, *mut f64, usize) -> i32,
+        fmi3: unsafe extern "C-unwind" fn(*mut c_void, *mut f64, usize) -> i32,
     ) -> Vec<f64> {
         let mut values = vec![f64::NAN; count];
         let function = if self.standard == Standard::Fmi2 { fmi2 } else { fmi3 };

@@ -203,8 +203,8 @@ impl Component {
 
     pub fn plain(
         &self,
-        fmi2: unsafe extern "C" fn(*mut c_void) -> i32,
-        fmi3: unsafe extern "C" fn(*mut c_void) -> i32,
+        fmi2: unsafe extern "C-unwind" fn(*mut c_void) -> i32,
+        fmi3: unsafe extern "C-unwind" fn(*mut c_void) -> i32,
     ) -> i32 {
         // SAFETY: a live handle.
         unsafe { if self.standard == Standard::Fmi2 { fmi2(self.handle) } else { fmi3(self.handle) } }

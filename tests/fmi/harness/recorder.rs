@@ -61,7 +61,7 @@ impl Recorder {
     }
 }
 
-unsafe extern "C" fn log2(
+unsafe extern "C-unwind" fn log2(
     environment: fmi2ComponentEnvironment,
     instance_name: fmi2String,
     status: fmi2Status,
@@ -75,7 +75,7 @@ unsafe extern "C" fn log2(
 /// The variadic logger of FMI 2.0.
 pub fn fmi2_logger() -> fmi2CallbackLogger {
     type Fixed =
-        unsafe extern "C" fn(fmi2ComponentEnvironment, fmi2String, fmi2Status, fmi2String, fmi2String);
+        unsafe extern "C-unwind" fn(fmi2ComponentEnvironment, fmi2String, fmi2Status, fmi2String, fmi2String);
     // SAFETY: stable Rust cannot define a variadic function. On the C ABIs of the supported platforms the named
     // arguments of a variadic call, pointers and one int, lie where those of an ordinary call lie, and the caller
     // cleans up; `log2` reads the named arguments only.
@@ -86,7 +86,7 @@ pub fn fmi2_logger() -> fmi2CallbackLogger {
 ///
 /// # Safety
 /// Called by an instance whose environment is a living recorder.
-pub unsafe extern "C" fn fmi3_logger(
+pub unsafe extern "C-unwind" fn fmi3_logger(
     environment: fmi3InstanceEnvironment,
     status: fmi3Status,
     category: fmi3String,

@@ -1,0 +1,135 @@
+//! The stop time is the end of time: "If the environment tries to compute past stopTime, the FMU has to return Error"
+//! (FMI 2.0.5, section 2.1.6; FMI 3.0.2, section 2.3.2). And how far time goes back.
+
+use super::harness::clocked::{Choices, sampled_units};
+use super::harness::{Component, OK, all, plants};
+
+const STOP: f64 = 0.01;
+/// Rounding of a last step of 1 ms, a billionth of it, and what is more than that \[s\].
+const ROUNDING: f64 = 1e-12;
+const MORE_THAN_ROUNDING: f64 = 1e-11;
+
+fn stepping(component: Component) -> Component {
+    assert_eq!(component.enter_initialization(0.0, Some(STOP)), OK);
+    assert_eq!(component.exit_initialization(), OK);
+    component.recorder.clear();
+    component
+}
+
+#[test]
+fn steps_end_at_the_stop_time() {
+    for (standard, unit) in all() {
+        let component = stepping(Component::new(standard, unit));
+        let twin = stepping(Component::new(standard, unit));
+        let unstopped = Component::new(standard, unit);
+        unstopped.initialise(0.0);
+        let said = "past the stop time: expected at most 0.01 s";
+        component.assert_refused(component.step(0.0, 1.0), &[said, "= 1 s"]);
+        for k in 0..9 {
+            for instance in [&component, &twin, &unstopped] {
+                assert_eq!(instance.step(f64::from(k) * 1e-3, 1e-3), OK, "{unit}, step {k}");
+            }
+        }
+        let before = component.snapshot();
+        component.recorder.clear();
+        component.assert_refused(component.step(9e-3, 1e-3 + MORE_THAN_ROUNDING), &[said]);
+        assert_eq!(component.snapshot(), before);
+        assert_eq!(component.step(9e-3, 1e-3 + ROUNDING), OK, "rounding");
+        for instance in [&twin, &unstopped] {
+            assert_eq!(instance.step(9e-3, 1e-3), OK);
+        }
+        twin.recorder.clear();
+        for k in 10..15 {
+            let time = f64::from(k) * 1e-3;
+            twin.assert_refused(twin.step(time.min(STOP), 1e-3), &[said]);
+            assert_eq!(unstopped.step(time, 1e-3), OK);
+        }
+        assert!((twin.get("time") - STOP).abs() <= 4.0 * f64::EPSILON * STOP);
+    }
+}
+
+#[test]
+fn saved_states_remember_the_stop_time() {
+    for (standard, unit) in all() {
+        let component = stepping(Component::new(standard, unit));
+        let bytes = component.saved_bytes();
+        let other = Component::new(standard, unit);
+        other.initialise(0.0);
+        assert_eq!(other.restore_bytes(&bytes), OK);
+        other.recorder.clear();
+        other.assert_refused(other.step(0.0, 2.0 * STOP), &["past the stop time"]);
+        // A new run has its own.
+        assert_eq!(other.reset(), OK);
+        other.initialise(0.0);
+        assert_eq!(other.step(0.0, 2.0 * STOP), OK);
+    }
+}
+
+#[test]
+fn steps_that_end_at_ticks_are_asked_for_within_the_stop_time() {
+    for unit in sampled_units() {
+        let choices = Choices { event_mode: true, early_return: true, intermediate_update: None };
+        let component = stepping(Component::co_simulation(unit, choices));
+        assert_eq!(component.enter_step_mode(), OK);
+        component.assert_refused(component.step_to_event(0.0, 1.0).status, &["past the stop time"]);
+        assert_eq!(component.step_to_event(0.0, STOP).status, OK);
+    }
+}
+
+#[test]
+fn schedulers_activate_up_to_the_stop_time() {
+    for unit in sampled_units() {
+        let component = stepping(Component::scheduled(unit, None));
+        assert_eq!(component.activate(0.0), OK);
+        let said = "activationTime = 0.011 s is past the stop time: expected at most 0.01 s";
+        component.assert_refused(component.activate(0.011), &[said]);
+        assert_eq!(component.activate(STOP), OK);
+    }
+}
+
+#[test]
+fn time_of_an_integration_ends_at_the_stop_time() {
+    for (standard, unit) in plants() {
+        let component = stepping(Component::exchanged(standard, unit));
+        component.update_discrete_states();
+        assert_eq!(component.enter_continuous_time(), OK);
+        assert_eq!(component.set_time(9e-3), OK);
+        assert_eq!(component.set_time(STOP + ROUNDING), OK);
+        assert_eq!(component.set_time(9e-3), OK);
+        let said = "time = 0.02 s is past the stop time: expected at most 0.01 s";
+        component.assert_refused(component.set_time(0.02), &[said]);
+        assert_eq!(component.get("time"), 9e-3);
+    }
+}
+
+#[test]
+fn time_of_an_integration_goes_back_to_the_step_before_the_last() {
+    for (standard, unit) in plants() {
+        let component = Component::in_continuous_time(standard, unit);
+        let complete = |time| {
+            assert_eq!(component.set_time(time), OK);
+            assert_eq!(component.complete_integrator_step(), OK);
+        };
+        component.assert_refused(component.set_time(-1e-3), &["time = -0.001 s", "expected at least 0 s"]);
+        complete(1e-3);
+        assert_eq!(component.set_time(0.0), OK, "back to the start");
+        complete(1e-3);
+        complete(2e-3);
+        assert_eq!(component.set_time(1.5e-3), OK, "a value at an output point");
+        component.assert_refused(component.set_time(0.5e-3), &["expected at least 0.001 s"]);
+        assert_eq!(component.set_time(3e-3), OK);
+        let bytes = component.saved_bytes();
+        let enter_event = |instance: &Component| {
+            assert_eq!(instance.enter_event_mode(), OK);
+            instance.update_discrete_states();
+            assert_eq!(instance.enter_continuous_time(), OK);
+            instance.recorder.clear();
+        };
+        enter_event(&component);
+        component.assert_refused(component.set_time(2.5e-3), &["expected at least 0.003 s"]);
+        assert_eq!(component.set_time(3e-3), OK, "the event itself");
+        // The state before the event knows nothing of it.
+        assert_eq!(component.restore_bytes(&bytes), OK);
+        assert_eq!(component.set_time(2.5e-3), OK);
+    }
+}
