@@ -58,9 +58,8 @@ pub fn judge(oracle: &Oracle, call: &Call, saved: &dyn Fn(usize) -> Option<Model
         }
         Call::SetTime(time) => {
             // Back by rounding only is nothing to refuse, and nothing to expect.
-            let bound = model.start.max(model.last_event);
-            let is_rounding = *time < bound && bound - time <= 1e-12 * bound.abs();
-            if is_rounding { Open } else { wrong_if(!time.is_finite()) }
+            let is_past = model.stop.is_some_and(|stop| *time > stop);
+            if *time < model.earliest() || is_past { Open } else { wrong_if(!time.is_finite()) }
         }
         Call::SetStates { states, is_null } => {
             let is_wrong = states.len() != description.state_count || (*is_null && !states.is_empty());
@@ -84,7 +83,9 @@ pub fn judge(oracle: &Oracle, call: &Call, saved: &dyn Fn(usize) -> Option<Model
                 Some(last) => *time > last && *time >= model.time,
                 None => *time >= model.time,
             };
-            wrong_if(!is_input_clock(description, *clock) || !time.is_finite() || !follows)
+            let is_wrong = !is_input_clock(description, *clock) || !time.is_finite() || !follows;
+            let is_past = model.stop.is_some_and(|stop| *time > stop);
+            if !is_wrong && is_past { Open } else { wrong_if(is_wrong) }
         }
         Call::GetClocks { references } => {
             wrong_if(!references.iter().all(|reference| is_clock(description, *reference)))
@@ -228,9 +229,9 @@ fn step(model: &Model, point: f64, size: f64) -> Arguments {
     if !(size.is_finite() && size > 0.0 && point.is_finite() && end.is_finite()) {
         return Wrong;
     }
-    let share = if Deviations::listed().has("communication-point-missed") { 2e-3 } else { 1e-6 };
-    let rounding = 1e-12 * point.abs().max(model.time.abs());
-    if (point - model.time).abs() > rounding.max(share * size) { Wrong } else { Open }
+    // A few units in the last place, or as many of the step as rounding may make of it.
+    let rounding = 1e-13 * point.abs().max(model.time.abs()).max(size);
+    if (point - model.time).abs() > rounding.max(2e-9 * size) { Wrong } else { Open }
 }
 
 fn is_clock(description: &ModelDescription, reference: u32) -> bool {

@@ -7,6 +7,7 @@ use maglev_fmu::fmi::fmi3::*;
 
 use super::answer::{Answer, pointer, pointer_mut};
 use super::call::{Call, Category, Experiment};
+use super::environment::in_host;
 
 /// Makes a call on a living instance. Calls about saved states are made elsewhere.
 ///
@@ -18,19 +19,21 @@ pub unsafe fn send(handle: *mut c_void, call: &Call) -> Answer {
         match call {
             Call::Logging { on, categories, is_null } => {
                 let names: Vec<_> = categories.iter().map(name).collect();
-                Answer::of(fmi3SetDebugLogging(handle, (*on).into(), names.len(), pointer(&names, *is_null)))
+                Answer::of(in_host(|| {
+                    fmi3SetDebugLogging(handle, (*on).into(), names.len(), pointer(&names, *is_null))
+                }))
             }
-            Call::EnterInitialization(Experiment { start, stop, tolerance }) => {
-                Answer::of(fmi3EnterInitializationMode(
+            Call::EnterInitialization(Experiment { start, stop, tolerance }) => Answer::of(in_host(|| {
+                fmi3EnterInitializationMode(
                     handle,
                     tolerance.is_some().into(),
                     tolerance.unwrap_or(f64::NAN),
                     *start,
                     stop.is_some().into(),
                     stop.unwrap_or(f64::NAN),
-                ))
-            }
-            Call::Plain(function) => Answer::of(plain(function)(handle)),
+                )
+            })),
+            Call::Plain(function) => Answer::of(in_host(|| plain(function)(handle))),
             Call::Get { function, references, room, is_null } => {
                 get(handle, function, references, *room, *is_null)
             }
@@ -40,42 +43,51 @@ pub unsafe fn send(handle: *mut c_void, call: &Call) -> Answer {
             Call::UpdateDiscreteStates { is_null } => update(handle, *is_null),
             Call::CompletedStep { is_null } => {
                 let (mut enter, mut end) = ([7_u8], [7_u8]);
-                let status = fmi3CompletedIntegratorStep(
-                    handle,
-                    1,
-                    pointer_mut(&mut enter, *is_null),
-                    pointer_mut(&mut end, *is_null),
-                );
+                let status = in_host(|| {
+                    fmi3CompletedIntegratorStep(
+                        handle,
+                        1,
+                        pointer_mut(&mut enter, *is_null),
+                        pointer_mut(&mut end, *is_null),
+                    )
+                });
                 assert!(status != 0 || *is_null || (enter, end) == ([0], [0]));
                 Answer::of(status)
             }
-            Call::SetTime(time) => Answer::of(fmi3SetTime(handle, *time)),
-            Call::SetStates { states, is_null } => {
-                Answer::of(fmi3SetContinuousStates(handle, pointer(states, *is_null), states.len()))
-            }
+            Call::SetTime(time) => Answer::of(in_host(|| fmi3SetTime(handle, *time))),
+            Call::SetStates { states, is_null } => Answer::of(in_host(|| {
+                fmi3SetContinuousStates(handle, pointer(states, *is_null), states.len())
+            })),
             Call::GetVector { function, length, is_null } => {
                 let mut values = vec![0.0; *length];
-                let status = vector(function)(handle, pointer_mut(&mut values, *is_null), *length);
+                let status =
+                    in_host(|| vector(function)(handle, pointer_mut(&mut values, *is_null), *length));
                 Answer::with_values(status, values)
             }
             Call::Count(function) => {
                 let mut count = 0;
                 let status = match *function {
-                    "fmi3GetNumberOfEventIndicators" => fmi3GetNumberOfEventIndicators(handle, &mut count),
-                    _ => fmi3GetNumberOfContinuousStates(handle, &mut count),
+                    "fmi3GetNumberOfEventIndicators" => {
+                        in_host(|| fmi3GetNumberOfEventIndicators(handle, &mut count))
+                    }
+                    _ => in_host(|| fmi3GetNumberOfContinuousStates(handle, &mut count)),
                 };
                 Answer::with_values(status, vec![count as f64])
             }
             Call::Step { point, size, is_final } => step(handle, *point, *size, *is_final),
-            Call::Activate { clock, time } => Answer::of(fmi3ActivateModelPartition(handle, *clock, *time)),
+            Call::Activate { clock, time } => {
+                Answer::of(in_host(|| fmi3ActivateModelPartition(handle, *clock, *time)))
+            }
             Call::GetClocks { references } => {
                 let mut active = vec![7; references.len()];
-                let status = fmi3GetClock(handle, references.as_ptr(), references.len(), active.as_mut_ptr());
+                let status = in_host(|| {
+                    fmi3GetClock(handle, references.as_ptr(), references.len(), active.as_mut_ptr())
+                });
                 Answer { active, ..Answer::of(status) }
             }
-            Call::SetClocks { references, values } => {
-                Answer::of(fmi3SetClock(handle, references.as_ptr(), references.len(), values.as_ptr()))
-            }
+            Call::SetClocks { references, values } => Answer::of(in_host(|| {
+                fmi3SetClock(handle, references.as_ptr(), references.len(), values.as_ptr())
+            })),
             Call::Timing { function, references } => timing(handle, function, references),
             Call::Partial { function, unknowns, knowns, seed } => {
                 let (is_adjoint, (m, n)) =
@@ -84,20 +96,22 @@ pub unsafe fn send(handle: *mut c_void, call: &Call) -> Answer {
                 let mut values = vec![0.0; if is_adjoint { n } else { m }];
                 let (u, k) = (unknowns.as_ptr(), knowns.as_ptr());
                 let room = values.len();
-                let status = call(handle, u, m, k, n, seed.as_ptr(), seed.len(), values.as_mut_ptr(), room);
+                let status = in_host(|| {
+                    call(handle, u, m, k, n, seed.as_ptr(), seed.len(), values.as_mut_ptr(), room)
+                });
                 Answer::with_values(status, values)
             }
             Call::GetSlopes { references, orders } => {
                 let (n, mut values) = (references.len(), vec![0.0; references.len()]);
                 let (r, o) = (references.as_ptr(), orders.as_ptr());
-                let status = fmi3GetOutputDerivatives(handle, r, n, o, values.as_mut_ptr(), n);
+                let status = in_host(|| fmi3GetOutputDerivatives(handle, r, n, o, values.as_mut_ptr(), n));
                 Answer::with_values(status, values)
             }
             Call::Dependencies(function) => Answer::of(match *function {
                 "fmi3GetNumberOfVariableDependencies" => {
-                    fmi3GetNumberOfVariableDependencies(handle, 1, &mut 0)
+                    in_host(|| fmi3GetNumberOfVariableDependencies(handle, 1, &mut 0))
                 }
-                _ => fmi3GetVariableDependencies(handle, 1, &mut 0, &mut 0, &mut 0, &mut 0, 1),
+                _ => in_host(|| fmi3GetVariableDependencies(handle, 1, &mut 0, &mut 0, &mut 0, &mut 0, 1)),
             }),
             _ => unreachable!("{call:?}"),
         }
@@ -153,13 +167,13 @@ macro_rules! types {
                 match function {
                     $(stringify!($get) => {
                         let mut values = vec![$from(0.0); room];
-                        let status = $get(handle, r, n, pointer_mut(&mut values, is_null), room);
+                        let status = in_host(|| $get(handle, r, n, pointer_mut(&mut values, is_null), room));
                         Answer::with_values(status, values.iter().map(|value: &$type| real(*value)).collect())
                     })*
                     "fmi3GetBinary" => {
                         let (mut sizes, mut values) = (vec![0; room], vec![null(); room]);
                         let values = pointer_mut(&mut values, is_null);
-                        Answer::of(fmi3GetBinary(handle, r, n, sizes.as_mut_ptr(), values, room))
+                        Answer::of(in_host(|| fmi3GetBinary(handle, r, n, sizes.as_mut_ptr(), values, room)))
                     }
                     _ => unreachable!("{function}"),
                 }
@@ -180,11 +194,11 @@ macro_rules! types {
                 match function {
                     $(stringify!($set) => {
                         let values: Vec<$type> = values.iter().map(|value| $from(*value)).collect();
-                        $set(handle, r, n, pointer(&values, is_null), room)
+                        in_host(|| $set(handle, r, n, pointer(&values, is_null), room))
                     })*
                     "fmi3SetBinary" => {
                         let (sizes, values) = (vec![1; values.len()], vec![&0_u8 as *const u8; values.len()]);
-                        fmi3SetBinary(handle, r, n, sizes.as_ptr(), pointer(&values, is_null), room)
+                        in_host(|| fmi3SetBinary(handle, r, n, sizes.as_ptr(), pointer(&values, is_null), room))
                     }
                     _ => unreachable!("{function}"),
                 }
@@ -221,8 +235,9 @@ unsafe fn step(handle: *mut c_void, point: f64, size: f64, is_final: bool) -> An
     let (mut event, mut end, mut early, mut reached) = (7, 7, 7, f64::NAN);
     let is_final = is_final.into();
     // SAFETY: the caller's promise; room for the results.
-    let status =
-        unsafe { fmi3DoStep(handle, point, size, is_final, &mut event, &mut end, &mut early, &mut reached) };
+    let status = unsafe {
+        in_host(|| fmi3DoStep(handle, point, size, is_final, &mut event, &mut end, &mut early, &mut reached))
+    };
     assert!(status != 0 || end == 0);
     Answer { reached, is_event: event == 1, is_early: early == 1, ..Answer::of(status) }
 }
@@ -233,10 +248,10 @@ unsafe fn update(handle: *mut c_void, is_null: bool) -> Answer {
     let status = unsafe {
         if is_null {
             let none = null_mut();
-            fmi3UpdateDiscreteStates(handle, none, none, none, none, none, null_mut())
+            in_host(|| fmi3UpdateDiscreteStates(handle, none, none, none, none, none, null_mut()))
         } else {
             let [need, end, nominals, states, defined] = &mut flags;
-            fmi3UpdateDiscreteStates(handle, need, end, nominals, states, defined, &mut next)
+            in_host(|| fmi3UpdateDiscreteStates(handle, need, end, nominals, states, defined, &mut next))
         }
     };
     assert!(status != 0 || is_null || (flags[1], flags[2]) == (0, 0), "{flags:?}");
@@ -253,14 +268,14 @@ unsafe fn timing(handle: *mut c_void, function: &str, references: &[u32]) -> Ans
     // SAFETY: the caller's promise.
     let status = unsafe {
         match function {
-            "fmi3GetIntervalDecimal" => fmi3GetIntervalDecimal(handle, r, n, d, q),
-            "fmi3GetIntervalFraction" => fmi3GetIntervalFraction(handle, r, n, c, s, q),
-            "fmi3GetShiftDecimal" => fmi3GetShiftDecimal(handle, r, n, d),
-            "fmi3GetShiftFraction" => fmi3GetShiftFraction(handle, r, n, c, s),
-            "fmi3SetIntervalDecimal" => fmi3SetIntervalDecimal(handle, r, n, d),
-            "fmi3SetIntervalFraction" => fmi3SetIntervalFraction(handle, r, n, c, s),
-            "fmi3SetShiftDecimal" => fmi3SetShiftDecimal(handle, r, n, d),
-            "fmi3SetShiftFraction" => fmi3SetShiftFraction(handle, r, n, c, s),
+            "fmi3GetIntervalDecimal" => in_host(|| fmi3GetIntervalDecimal(handle, r, n, d, q)),
+            "fmi3GetIntervalFraction" => in_host(|| fmi3GetIntervalFraction(handle, r, n, c, s, q)),
+            "fmi3GetShiftDecimal" => in_host(|| fmi3GetShiftDecimal(handle, r, n, d)),
+            "fmi3GetShiftFraction" => in_host(|| fmi3GetShiftFraction(handle, r, n, c, s)),
+            "fmi3SetIntervalDecimal" => in_host(|| fmi3SetIntervalDecimal(handle, r, n, d)),
+            "fmi3SetIntervalFraction" => in_host(|| fmi3SetIntervalFraction(handle, r, n, c, s)),
+            "fmi3SetShiftDecimal" => in_host(|| fmi3SetShiftDecimal(handle, r, n, d)),
+            "fmi3SetShiftFraction" => in_host(|| fmi3SetShiftFraction(handle, r, n, c, s)),
             _ => unreachable!("{function}"),
         }
     };

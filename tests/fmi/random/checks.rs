@@ -140,7 +140,7 @@ impl Session {
 
     /// A state in which everything has been computed that follows at its instant.
     fn brought_up_to_date(&self, bytes: &[u8]) -> Result<Vec<u8>, String> {
-        let twin = Self::new(self.scenario, self.choices.clone(), Dice::new(0), &[])?;
+        let twin = Self::new(self.scenario, self.choices.clone(), Dice::new(0), &[], None)?;
         twin.log.clear();
         let mut state = core::ptr::null_mut();
         if bytes.is_empty() || twin.deserialise(bytes, &mut state) != 0 || twin.set_state(state) != 0 {

@@ -10,6 +10,8 @@ thread_local! {
     static HAS_FAILED: Cell<bool> = const { Cell::new(false) };
     /// The control word that the host has around the present call.
     static CONTROL: Cell<Option<u32>> = const { Cell::new(None) };
+    /// What is unusual about the host in the next calls.
+    static PLAN: Cell<Host> = const { Cell::new(Host { allocations: None, control: None }) };
 }
 
 /// The system's allocator, out of memory where a test wants it to be.
@@ -77,32 +79,41 @@ pub struct Host {
 }
 
 impl Host {
-    /// Makes a call in this environment; whether memory was short.
-    pub fn around<T>(self, call: impl FnOnce() -> T) -> (T, bool) {
-        let outer = (ALLOCATIONS.get(), CONTROL.get());
+    /// Lets `act` make its calls in this environment; whether memory was short.
+    pub fn around<T>(self, act: impl FnOnce() -> T) -> (T, bool) {
+        let outer = PLAN.replace(self);
         HAS_FAILED.set(false);
-        CONTROL.set(self.control);
-        let usual = control_word();
-        if let Some(control) = self.control {
-            set_control_word(control);
-        }
-        ALLOCATIONS.set(self.allocations);
-        let result = call();
-        ALLOCATIONS.set(outer.0);
-        let is_restored = self.control.is_none_or(|control| is_same(control, control_word()));
-        set_control_word(usual);
-        CONTROL.set(outer.1);
-        assert!(is_restored, "the call has left another floating-point environment than it found");
+        let result = act();
+        PLAN.set(outer);
         (result, HAS_FAILED.get())
     }
 }
 
+/// A call into the library, with nothing around it that could allocate or calculate.
+pub fn in_host<T>(call: impl FnOnce() -> T) -> T {
+    let Host { allocations, control } = PLAN.get();
+    let outer = CONTROL.replace(control);
+    let usual = control_word();
+    if let Some(control) = control {
+        set_control_word(control);
+    }
+    ALLOCATIONS.set(allocations);
+    let result = call();
+    ALLOCATIONS.set(None);
+    let is_restored = is_same(control.unwrap_or(usual), control_word());
+    set_control_word(usual);
+    CONTROL.set(outer);
+    assert!(is_restored, "the call has left another floating-point environment than it found");
+    result
+}
+
 /// What an importer does in a callback: memory suffices, and nothing is trapped.
 pub fn at_home<T>(act: impl FnOnce() -> T) -> T {
-    let (allocations, control) = (ALLOCATIONS.take(), control_word());
+    let (allocations, control, word) = (ALLOCATIONS.take(), CONTROL.take(), control_word());
     set_control_word(DEFAULT_CONTROL);
-    let result = act();
-    set_control_word(control);
+    let (result, _) = Host::default().around(act);
+    set_control_word(word);
+    CONTROL.set(control);
     ALLOCATIONS.set(allocations);
     result
 }

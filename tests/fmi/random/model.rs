@@ -93,6 +93,12 @@ impl Model {
                 self.completed = [self.completed[1], self.time];
                 self.promised = self.promised.max(self.time);
             }
+            Call::Timing { function, references }
+                if function.starts_with("fmi3SetInterval") && !references.is_empty() =>
+            {
+                self.sample_time = 1e-3;
+                self.is_changed = true;
+            }
             Call::SetTime(time) => self.time = *time,
             Call::Step { point, is_final, .. } => {
                 self.time = answer.reached;
@@ -110,6 +116,16 @@ impl Model {
             Call::SetClocks { values, .. } => self.is_clock_set |= values.iter().any(|value| *value != 0),
             _ => {}
         }
+    }
+
+    /// Earliest time that may be set in model exchange (FMI 3.0.2, section 3.2.1) \[s\].
+    pub fn earliest(&self) -> f64 {
+        self.start.max(self.last_event).max(self.completed[0])
+    }
+
+    /// Whether `time` lies after the stop time by more than rounding makes of the `way` that leads there \[s\].
+    pub fn is_past_stop(&self, time: f64, way: f64) -> bool {
+        self.stop.is_some_and(|stop| time - stop > 2e-9 * way + 1e-14 * time.abs())
     }
 
     /// Goes on from where a state was saved.

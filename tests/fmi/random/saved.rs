@@ -10,6 +10,7 @@ use super::super::harness::Standard;
 use super::answer::Answer;
 use super::arguments::Arguments;
 use super::call::{Call, Damage};
+use super::environment::in_host;
 use super::model::Model;
 use super::oracle::Verdict;
 use super::session::Session;
@@ -161,9 +162,9 @@ impl Session {
         // SAFETY: a live handle; null or a living state, here and below.
         unsafe {
             if self.is_fmi2() {
-                fmi2GetFMUstate(self.handle, state)
+                in_host(|| fmi2GetFMUstate(self.handle, state))
             } else {
-                fmi3GetFMUState(self.handle, state)
+                in_host(|| fmi3GetFMUState(self.handle, state))
             }
         }
     }
@@ -172,9 +173,9 @@ impl Session {
         // SAFETY: as above.
         unsafe {
             if self.is_fmi2() {
-                fmi2SetFMUstate(self.handle, state)
+                in_host(|| fmi2SetFMUstate(self.handle, state))
             } else {
-                fmi3SetFMUState(self.handle, state)
+                in_host(|| fmi3SetFMUState(self.handle, state))
             }
         }
     }
@@ -183,9 +184,9 @@ impl Session {
         // SAFETY: as above.
         unsafe {
             if self.is_fmi2() {
-                fmi2FreeFMUstate(self.handle, state)
+                in_host(|| fmi2FreeFMUstate(self.handle, state))
             } else {
-                fmi3FreeFMUState(self.handle, state)
+                in_host(|| fmi3FreeFMUState(self.handle, state))
             }
         }
     }
@@ -194,9 +195,9 @@ impl Session {
         // SAFETY: as above.
         unsafe {
             if self.is_fmi2() {
-                fmi2SerializedFMUstateSize(self.handle, state, size)
+                in_host(|| fmi2SerializedFMUstateSize(self.handle, state, size))
             } else {
-                fmi3SerializedFMUStateSize(self.handle, state, size)
+                in_host(|| fmi3SerializedFMUStateSize(self.handle, state, size))
             }
         }
     }
@@ -206,9 +207,9 @@ impl Session {
         // SAFETY: as above, room for the bytes.
         unsafe {
             if self.is_fmi2() {
-                fmi2SerializeFMUstate(self.handle, state, target.cast(), size)
+                in_host(|| fmi2SerializeFMUstate(self.handle, state, target.cast(), size))
             } else {
-                fmi3SerializeFMUState(self.handle, state, target, size)
+                in_host(|| fmi3SerializeFMUState(self.handle, state, target, size))
             }
         }
     }
@@ -218,9 +219,9 @@ impl Session {
         // SAFETY: as above.
         unsafe {
             if self.is_fmi2() {
-                fmi2DeSerializeFMUstate(self.handle, source.cast(), size, state)
+                in_host(|| fmi2DeSerializeFMUstate(self.handle, source.cast(), size, state))
             } else {
-                fmi3DeserializeFMUState(self.handle, source, size, state)
+                in_host(|| fmi3DeserializeFMUState(self.handle, source, size, state))
             }
         }
     }

@@ -46,8 +46,11 @@ impl Scenario {
         found.and_then(|variable| variable.start).unwrap_or(f64::INFINITY)
     }
 
-    /// Whether the package declares a capability for this interface type.
+    /// Whether the package declares a capability for this interface type, or an attribute of its clocks.
     pub fn can(&self, capability: &str) -> bool {
+        if capability == "intervalDecimal" {
+            return self.description.variables.iter().any(|variable| variable.has_interval);
+        }
         self.description.can(self.interface.element(), capability)
     }
 }

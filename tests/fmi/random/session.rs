@@ -40,7 +40,12 @@ pub struct Session {
     pub kept: RefCell<Vec<Kept>>,
     pub tally: RefCell<Tally>,
     pub dice: RefCell<Dice>,
+    /// Random numbers for what is unusual about the host, if anything is.
+    moods: RefCell<Dice>,
+    has_moods: bool,
     is_tame: bool,
+    /// Whether a callback has reset or restored the instance.
+    has_left: Cell<bool>,
     /// Serialised state as of the last call.
     pub present: RefCell<Vec<u8>>,
     /// What was called, and what came of it.
@@ -60,24 +65,27 @@ impl Session {
         seed: u64,
         count: usize,
         foreign: &[Kept],
+        mood: Option<u64>,
     ) -> Result<(Tally, Vec<Kept>), String> {
         let mut dice = Dice::new(seed);
         let choices = Choices::new(&scenario, &mut dice);
-        let session = Self::new(scenario, choices, dice, foreign)?;
+        let session = Self::new(scenario, choices, dice, foreign, mood)?;
         CURRENT.set(&session);
         let outcome = session.calls(count);
         CURRENT.set(core::ptr::null());
         outcome.map_err(|what| session.report(&what))?;
+        session.tally.borrow_mut().last = session.present.take();
         let own = session.kept.borrow().iter().skip(foreign.len()).take(1).cloned().collect();
         Ok((session.tally.take(), own))
     }
 
-    /// An instance on which nothing has been called.
+    /// An instance on which nothing has been called; `mood` seeds what is unusual about the host.
     pub fn new(
         scenario: Scenario,
         choices: Choices,
         mut dice: Dice,
         foreign: &[Kept],
+        mood: Option<u64>,
     ) -> Result<Self, String> {
         let log = Box::new(Log::new());
         let environment = core::ptr::from_ref(&*log).cast_mut().cast();
@@ -96,6 +104,9 @@ impl Session {
             tally: RefCell::new(Tally::default()),
             dice: RefCell::new(dice),
             is_tame,
+            moods: RefCell::new(Dice::new(mood.unwrap_or_default())),
+            has_moods: mood.is_some(),
+            has_left: Cell::new(false),
             present: RefCell::default(),
             trace: RefCell::default(),
             failure: RefCell::default(),
@@ -141,14 +152,23 @@ impl Session {
         };
         self.remember(format!("{:?}: {call:?}", self.model.borrow().state));
         self.log.clear();
-        let host = Host::default();
+        let host = self.host();
+        if host != Host::default() {
+            self.remember(format!("    {host:?}"));
+        }
         let begin = Instant::now();
-        let (answer, _) = host.around(|| self.send(&call));
+        let (answer, is_memory_short) = host.around(|| self.send(&call));
         let duration = begin.elapsed();
         if let Some(failure) = self.failure.take() {
             return Err(failure);
         }
         self.remember(format!("    {} {:?} {}", answer.status, answer.values, self.log.text()));
+        if self.has_left.take() {
+            return self.come_back(&call, &answer);
+        }
+        if is_memory_short && answer.status == 3 {
+            return self.check_state(&call, &answer);
+        }
         if duration > TIME_LIMIT {
             return Err(format!("computes for {duration:?}"));
         }
@@ -227,6 +247,24 @@ impl Session {
         trace.push_back(line);
     }
 
+    /// What is unusual about the host of the next call. Decided apart from the calls, which stay the same without it.
+    fn host(&self) -> Host {
+        let mut moods = self.moods.borrow_mut();
+        if !self.has_moods || self.model.borrow().state.is_in_callback() || !moods.percent(20) {
+            return Host::default();
+        }
+        Host { allocations: None, control: Some(moods.pick(&environment::CONTROLS)) }
+    }
+
+    /// A call whose callback has reset or restored the instance, which has no step to return to.
+    fn come_back(&self, call: &Call, answer: &Answer) -> Result<(), String> {
+        if answer.status != 3 {
+            return Err(format!("{call:?} returns {} although the instance was taken away", answer.status));
+        }
+        self.model.borrow_mut().has_erred = true;
+        self.look()
+    }
+
     /// Random calls within a callback.
     fn call_back(&self, state: State) -> Option<f64> {
         let before = self.model.borrow().state;
@@ -237,6 +275,10 @@ impl Session {
             if let Err(failure) = self.act() {
                 self.failure.borrow_mut().get_or_insert(failure);
                 break;
+            }
+            if self.model.borrow().state != state {
+                self.has_left.set(true);
+                return None;
             }
         }
         self.model.borrow_mut().state = before;
@@ -263,13 +305,13 @@ impl Drop for Session {
 }
 
 /// The session of this thread, if the environment is its own.
-fn current(environment: *mut c_void) -> Option<&'static Session> {
+fn current(environment: *mut c_void, is_that_of_the_host: bool) -> Option<&'static Session> {
     // SAFETY: set while a session makes calls, and callbacks are made within calls only.
     let session = unsafe { CURRENT.get().as_ref() }?;
     if environment != core::ptr::from_ref(&*session.log).cast_mut().cast() {
         session.object("a callback with another environment".into());
     }
-    if !environment::is_that_of_the_host() {
+    if !is_that_of_the_host {
         session.object("a callback in another floating-point environment than that of the host".into());
     }
     Some(session)
@@ -285,8 +327,9 @@ unsafe extern "C" fn intermediate_update(
     early_return_requested: *mut u8,
     early_return_time: *mut f64,
 ) {
+    let is_that_of_the_host = environment::is_that_of_the_host();
     environment::at_home(|| {
-        let Some(session) = current(environment) else { return };
+        let Some(session) = current(environment, is_that_of_the_host) else { return };
         let (last, end) = session.step.get();
         if !(time >= last && time <= end) {
             session.object(format!("a callback at {time}, after {last} and before {end}"));
@@ -307,8 +350,9 @@ unsafe extern "C" fn intermediate_update(
 }
 
 unsafe extern "C" fn clock_update(environment: *mut c_void) {
+    let is_that_of_the_host = environment::is_that_of_the_host();
     environment::at_home(|| {
-        if let Some(session) = current(environment) {
+        if let Some(session) = current(environment, is_that_of_the_host) {
             session.call_back(State::Update);
         }
     });

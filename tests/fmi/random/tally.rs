@@ -25,6 +25,8 @@ pub struct Tally {
     pub set: BTreeSet<Place>,
     /// Set to the smallest, to the largest value.
     pub limits: [BTreeSet<Place>; 2],
+    /// Serialised state at the end of a sequence.
+    pub last: Vec<u8>,
     pub longest: Duration,
     pub longest_call: String,
 }

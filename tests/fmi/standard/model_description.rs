@@ -55,6 +55,8 @@ pub struct Variable {
     pub may_be_updated: bool,
     /// Value references of the clocks it is bound to.
     pub clocks: Vec<u32>,
+    /// Of a clock: intervalDecimal.
+    pub has_interval: bool,
 }
 
 pub struct ModelDescription {
@@ -202,6 +204,7 @@ fn variable(standard: Standard, root: Node, node: Node) -> Variable {
         may_jump: described.attribute("reinit") == Some("true"),
         may_be_updated: described.attribute("intermediateUpdate") == Some("true"),
         clocks: clocks.map(|reference| reference.parse().unwrap()).collect(),
+        has_interval: described.attribute("intervalDecimal").is_some(),
     }
 }
 
