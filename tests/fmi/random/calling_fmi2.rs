@@ -115,7 +115,7 @@ fn name(category: &Category) -> *const core::ffi::c_char {
     }
 }
 
-fn plain(function: &str) -> unsafe extern "C" fn(*mut c_void) -> i32 {
+fn plain(function: &str) -> unsafe extern "C-unwind" fn(*mut c_void) -> i32 {
     match function {
         "fmi2ExitInitializationMode" => fmi2ExitInitializationMode,
         "fmi2Terminate" => fmi2Terminate,
@@ -127,7 +127,7 @@ fn plain(function: &str) -> unsafe extern "C" fn(*mut c_void) -> i32 {
     }
 }
 
-fn vector(function: &str) -> unsafe extern "C" fn(*mut c_void, *mut f64, usize) -> i32 {
+fn vector(function: &str) -> unsafe extern "C-unwind" fn(*mut c_void, *mut f64, usize) -> i32 {
     match function {
         "fmi2GetDerivatives" => fmi2GetDerivatives,
         "fmi2GetEventIndicators" => fmi2GetEventIndicators,

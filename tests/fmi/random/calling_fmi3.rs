@@ -126,7 +126,7 @@ fn name(category: &Category) -> *const c_char {
     }
 }
 
-fn plain(function: &str) -> unsafe extern "C" fn(*mut c_void) -> i32 {
+fn plain(function: &str) -> unsafe extern "C-unwind" fn(*mut c_void) -> i32 {
     match function {
         "fmi3ExitInitializationMode" => fmi3ExitInitializationMode,
         "fmi3Terminate" => fmi3Terminate,
@@ -141,7 +141,7 @@ fn plain(function: &str) -> unsafe extern "C" fn(*mut c_void) -> i32 {
     }
 }
 
-fn vector(function: &str) -> unsafe extern "C" fn(*mut c_void, *mut f64, usize) -> i32 {
+fn vector(function: &str) -> unsafe extern "C-unwind" fn(*mut c_void, *mut f64, usize) -> i32 {
     match function {
         "fmi3GetContinuousStateDerivatives" => fmi3GetContinuousStateDerivatives,
         "fmi3GetEventIndicators" => fmi3GetEventIndicators,

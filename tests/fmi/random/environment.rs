@@ -1,79 +1,23 @@
 //! The host around a call: memory that runs out, floating-point exceptions that are trapped, another rounding.
 
 use core::cell::Cell;
-use std::alloc::{GlobalAlloc, Layout, System};
+
+use super::super::failing_memory::{blocks, has_failed, limit};
 
 thread_local! {
-    /// Allocations of this thread until one fails; none fails while there is no number.
-    static ALLOCATIONS: Cell<Option<u32>> = const { Cell::new(None) };
-    /// Whether an allocation has failed.
-    static HAS_FAILED: Cell<bool> = const { Cell::new(false) };
+    /// Blocks of memory that the library holds.
+    static HELD: Cell<i64> = const { Cell::new(0) };
     /// The control word that the host has around the present call.
     static CONTROL: Cell<Option<u32>> = const { Cell::new(None) };
     /// What is unusual about the host in the next calls.
     static PLAN: Cell<Host> = const { Cell::new(Host { allocations: None, control: None }) };
 }
 
-/// The system's allocator, out of memory where a test wants it to be.
-struct Limited;
-
-fn fails() -> bool {
-    ALLOCATIONS
-        .try_with(|left| match left.get() {
-            None => false,
-            Some(0) => {
-                HAS_FAILED.set(true);
-                true
-            }
-            Some(number) => {
-                left.set(Some(number - 1));
-                false
-            }
-        })
-        .unwrap_or(false)
-}
-
-// SAFETY: everything is handed on to the system's allocator, or null is returned, as an allocator may; counting does not
-// allocate.
-unsafe impl GlobalAlloc for Limited {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        if fails() {
-            return core::ptr::null_mut();
-        }
-        // SAFETY: the caller's promise.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: the caller's promise.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-
-    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
-        if fails() {
-            return core::ptr::null_mut();
-        }
-        // SAFETY: the caller's promise.
-        unsafe { System.alloc_zeroed(layout) }
-    }
-
-    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        if fails() {
-            return core::ptr::null_mut();
-        }
-        // SAFETY: the caller's promise.
-        unsafe { System.realloc(pointer, layout, size) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Limited = Limited;
-
 /// What is unusual about the host during a call.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Host {
     /// Allocations that succeed before all others fail.
-    pub allocations: Option<u32>,
+    pub allocations: Option<u64>,
     /// Control word of the floating-point unit (MXCSR on x86-64), where it is not the default.
     pub control: Option<u32>,
 }
@@ -82,10 +26,10 @@ impl Host {
     /// Lets `act` make its calls in this environment; whether memory was short.
     pub fn around<T>(self, act: impl FnOnce() -> T) -> (T, bool) {
         let outer = PLAN.replace(self);
-        HAS_FAILED.set(false);
+        has_failed();
         let result = act();
         PLAN.set(outer);
-        (result, HAS_FAILED.get())
+        (result, has_failed())
     }
 }
 
@@ -97,9 +41,11 @@ pub fn in_host<T>(call: impl FnOnce() -> T) -> T {
     if let Some(control) = control {
         set_control_word(control);
     }
-    ALLOCATIONS.set(allocations);
+    let before = blocks();
+    limit(allocations);
     let result = call();
-    ALLOCATIONS.set(None);
+    limit(None);
+    HELD.set(HELD.get() + blocks() - before);
     let is_restored = is_same(control.unwrap_or(usual), control_word());
     set_control_word(usual);
     CONTROL.set(outer);
@@ -109,13 +55,21 @@ pub fn in_host<T>(call: impl FnOnce() -> T) -> T {
 
 /// What an importer does in a callback: memory suffices, and nothing is trapped.
 pub fn at_home<T>(act: impl FnOnce() -> T) -> T {
-    let (allocations, control, word) = (ALLOCATIONS.take(), CONTROL.take(), control_word());
+    let (allocations, control, word) = (limit(None), CONTROL.take(), control_word());
     set_control_word(DEFAULT_CONTROL);
+    let before = blocks();
     let (result, _) = Host::default().around(act);
+    // What the importer holds is not the library's; calls that it made have counted for themselves.
+    HELD.set(HELD.get() - (blocks() - before));
     set_control_word(word);
     CONTROL.set(control);
-    ALLOCATIONS.set(allocations);
+    limit(allocations);
     result
+}
+
+/// Blocks of memory that the library holds on this thread.
+pub fn held() -> i64 {
+    HELD.get()
 }
 
 /// Whether a callback finds the floating-point environment of the call that it is made from.

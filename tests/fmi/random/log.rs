@@ -77,7 +77,7 @@ impl Log {
 
 /// # Safety
 /// Called by the library: the environment is a living [`Log`], the strings are C strings.
-pub unsafe extern "C" fn fmi3_logger(
+pub unsafe extern "C-unwind" fn fmi3_logger(
     environment: *mut c_void,
     status: i32,
     category: *const c_char,
@@ -89,7 +89,7 @@ pub unsafe extern "C" fn fmi3_logger(
     }
 }
 
-unsafe extern "C" fn fixed_fmi2_logger(
+unsafe extern "C-unwind" fn fixed_fmi2_logger(
     environment: *mut c_void,
     name: *const c_char,
     status: i32,
@@ -108,7 +108,7 @@ unsafe extern "C" fn fixed_fmi2_logger(
 
 /// The variadic logger of FMI 2.0.
 pub fn fmi2_logger() -> fmi2CallbackLogger {
-    type Fixed = unsafe extern "C" fn(*mut c_void, *const c_char, i32, *const c_char, *const c_char);
+    type Fixed = unsafe extern "C-unwind" fn(*mut c_void, *const c_char, i32, *const c_char, *const c_char);
     // SAFETY: as in the harness: on the C ABIs of the supported platforms the named arguments of a variadic call lie
     // where those of an ordinary call lie, and the caller cleans up.
     unsafe { transmute::<Fixed, fmi2CallbackLogger>(fixed_fmi2_logger) }

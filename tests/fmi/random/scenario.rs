@@ -12,6 +12,7 @@ use maglev_fmu::fmi::fmi3::*;
 use super::super::harness::Standard;
 use super::super::standard::{Interface, ModelDescription};
 use super::dice::Dice;
+use super::environment::in_host;
 use super::log;
 
 /// Parameter of sampled units.
@@ -130,37 +131,43 @@ pub fn instantiate(
                 } else {
                     FMI2_CO_SIMULATION
                 };
-                fmi2Instantiate(name, kind, token, null(), &functions, 0, i32::from(choices.logging_on))
+                in_host(|| {
+                    fmi2Instantiate(name, kind, token, null(), &functions, 0, i32::from(choices.logging_on))
+                })
             }
-            (Standard::Fmi3, Interface::ModelExchange) => {
+            (Standard::Fmi3, Interface::ModelExchange) => in_host(|| {
                 fmi3InstantiateModelExchange(name, token, null(), 0, logging_on, environment, logger)
-            }
-            (Standard::Fmi3, Interface::CoSimulation) => fmi3InstantiateCoSimulation(
-                name,
-                token,
-                null(),
-                0,
-                logging_on,
-                choices.has_events.into(),
-                choices.may_return_early.into(),
-                choices.registered.as_ptr(),
-                choices.registered.len(),
-                environment,
-                logger,
-                choices.has_callback.then_some(intermediate_update),
-            ),
-            (Standard::Fmi3, Interface::ScheduledExecution) => fmi3InstantiateScheduledExecution(
-                name,
-                token,
-                null(),
-                0,
-                logging_on,
-                environment,
-                logger,
-                choices.has_callback.then_some(clock_update),
-                None,
-                None,
-            ),
+            }),
+            (Standard::Fmi3, Interface::CoSimulation) => in_host(|| {
+                fmi3InstantiateCoSimulation(
+                    name,
+                    token,
+                    null(),
+                    0,
+                    logging_on,
+                    choices.has_events.into(),
+                    choices.may_return_early.into(),
+                    choices.registered.as_ptr(),
+                    choices.registered.len(),
+                    environment,
+                    logger,
+                    choices.has_callback.then_some(intermediate_update),
+                )
+            }),
+            (Standard::Fmi3, Interface::ScheduledExecution) => in_host(|| {
+                fmi3InstantiateScheduledExecution(
+                    name,
+                    token,
+                    null(),
+                    0,
+                    logging_on,
+                    environment,
+                    logger,
+                    choices.has_callback.then_some(clock_update),
+                    None,
+                    None,
+                )
+            }),
         }
     }
 }
@@ -173,8 +180,8 @@ pub unsafe fn free(standard: Standard, handle: *mut c_void) {
     // SAFETY: the caller's promise.
     unsafe {
         match standard {
-            Standard::Fmi2 => fmi2FreeInstance(handle),
-            Standard::Fmi3 => fmi3FreeInstance(handle),
+            Standard::Fmi2 => in_host(|| fmi2FreeInstance(handle)),
+            Standard::Fmi3 => in_host(|| fmi3FreeInstance(handle)),
         }
     }
 }

@@ -69,6 +69,7 @@ impl Session {
     ) -> Result<(Tally, Vec<Kept>), String> {
         let mut dice = Dice::new(seed);
         let choices = Choices::new(&scenario, &mut dice);
+        let held = environment::held();
         let session = Self::new(scenario, choices, dice, foreign, mood)?;
         CURRENT.set(&session);
         let outcome = session.calls(count);
@@ -76,7 +77,12 @@ impl Session {
         outcome.map_err(|what| session.report(&what))?;
         session.tally.borrow_mut().last = session.present.take();
         let own = session.kept.borrow().iter().skip(foreign.len()).take(1).cloned().collect();
-        Ok((session.tally.take(), own))
+        let tally = session.tally.take();
+        drop(session);
+        match environment::held() - held {
+            0 => Ok((tally, own)),
+            leaked => Err(format!("{leaked} blocks of memory leak")),
+        }
     }
 
     /// An instance on which nothing has been called; `mood` seeds what is unusual about the host.
@@ -89,7 +95,17 @@ impl Session {
     ) -> Result<Self, String> {
         let log = Box::new(Log::new());
         let environment = core::ptr::from_ref(&*log).cast_mut().cast();
-        let handle = instantiate(&scenario, &choices, environment, intermediate_update, clock_update);
+        let make = || instantiate(&scenario, &choices, environment, intermediate_update, clock_update);
+        // Memory may be short: then there is none, and a message.
+        let allocations = dice.percent(10).then(|| dice.below(3) as u64);
+        let (mut handle, is_memory_short) = Host { allocations, control: None }.around(make);
+        if is_memory_short {
+            let is_told = !choices.has_logger || log.complaints() == 1;
+            if !handle.is_null() || !is_told {
+                return Err(format!("memory for {allocations:?} blocks makes {handle:?}: {}", log.text()));
+            }
+            handle = make();
+        }
         if handle.is_null() {
             return Err(format!("not instantiated: {choices:?}: {}", log.text()));
         }
@@ -152,7 +168,7 @@ impl Session {
         };
         self.remember(format!("{:?}: {call:?}", self.model.borrow().state));
         self.log.clear();
-        let host = self.host();
+        let host = self.host(&call);
         if host != Host::default() {
             self.remember(format!("    {host:?}"));
         }
@@ -248,12 +264,12 @@ impl Session {
     }
 
     /// What is unusual about the host of the next call. Decided apart from the calls, which stay the same without it.
-    fn host(&self) -> Host {
-        let mut moods = self.moods.borrow_mut();
-        if !self.has_moods || self.model.borrow().state.is_in_callback() || !moods.percent(20) {
-            return Host::default();
-        }
-        Host { allocations: None, control: Some(moods.pick(&environment::CONTROLS)) }
+    fn host(&self, call: &Call) -> Host {
+        let (mut dice, mut moods) = (self.dice.borrow_mut(), self.moods.borrow_mut());
+        let asks_for_memory = matches!(call, Call::Save { .. } | Call::Deserialise { .. });
+        let allocations = dice.percent(if asks_for_memory { 20 } else { 1 }).then_some(0);
+        let is_moody = self.has_moods && !self.model.borrow().state.is_in_callback() && moods.percent(20);
+        Host { allocations, control: is_moody.then(|| moods.pick(&environment::CONTROLS)) }
     }
 
     /// A call whose callback has reset or restored the instance, which has no step to return to.
@@ -317,7 +333,7 @@ fn current(environment: *mut c_void, is_that_of_the_host: bool) -> Option<&'stat
     Some(session)
 }
 
-unsafe extern "C" fn intermediate_update(
+unsafe extern "C-unwind" fn intermediate_update(
     environment: *mut c_void,
     time: f64,
     _: u8,
@@ -349,7 +365,7 @@ unsafe extern "C" fn intermediate_update(
     });
 }
 
-unsafe extern "C" fn clock_update(environment: *mut c_void) {
+unsafe extern "C-unwind" fn clock_update(environment: *mut c_void) {
     let is_that_of_the_host = environment::is_that_of_the_host();
     environment::at_home(|| {
         if let Some(session) = current(environment, is_that_of_the_host) {
