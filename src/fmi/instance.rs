@@ -7,10 +7,11 @@ use super::fmi3::types::{fmi3ClockUpdateCallback, fmi3InstanceEnvironment};
 use super::intermediate_update::{IntermediateUpdate, StepInProgress};
 use super::saved_state::Life;
 use super::ticking::ClockStates;
-use super::{CallError, Callback, CommunicationPoint, Function, Interface, Logger, Phase};
+use super::{CallError, Callback, CommunicationPoint, Form, Function, Interface, Logger, Phase};
+use crate::unit::sampled::ClockVariable;
 use crate::unit::start_values::read_token;
 use crate::unit::variable::Variable;
-use crate::unit::{ContinuousRows, Description, Journal, TIME, Topic, Unit};
+use crate::unit::{ContinuousRows, Description, Edition, Journal, TIME, Topic, Unit};
 
 /// What a handle (`fmi2Component`, `fmi3Instance`) points to.
 pub struct Instance {
@@ -18,6 +19,8 @@ pub struct Instance {
     /// The unit as made, for reset.
     template: Box<dyn Unit>,
     pub(super) variables: &'static [Variable],
+    /// What the importer has read of the unit.
+    pub(super) edition: Edition,
     /// Where the table holds what moves in continuous time.
     pub(super) rows: ContinuousRows,
     pub(super) interface: Interface,
@@ -39,13 +42,14 @@ pub struct Instance {
 }
 
 impl Instance {
-    /// An instance of any unit, not only of those the library knows by token.
+    /// An instance of any unit, not only of those the library knows by token, in its plain edition.
     pub fn new(unit: Box<dyn Unit>, interface: Interface, logger: Logger) -> Self {
         Self {
             template: unit.boxed_clone(),
             variables: unit.description().variables,
             rows: ContinuousRows::of(unit.description()),
             unit,
+            edition: Edition::Plain,
             interface,
             phase: Phase::Instantiated,
             logger,
@@ -156,6 +160,11 @@ impl Instance {
         Ok(())
     }
 
+    /// Clocks that the importer knows of, with their value references.
+    pub(super) fn clocks(&self) -> impl Iterator<Item = (usize, &'static ClockVariable)> + use<> {
+        self.edition.clocks(self.unit.description())
+    }
+
     /// Whether the instance can get into `phase`.
     pub(super) fn reaches(&self, phase: Phase) -> bool {
         self.interface.reaches(phase)
@@ -202,34 +211,53 @@ pub(super) fn instantiate(
         }
     };
     let token = token.unwrap_or_default().to_str().unwrap_or_default();
-    let (unit, start_values) = match read_token(token) {
+    let (unit, edition, start_values) = match read_token(token) {
         Ok(found) => found,
         Err(error) => {
             logger.error(format_args!("{function}: {error}"));
             return None;
         }
     };
-    if !interface.is_offered_by(unit.description) {
+    if !interface.is_offered_by(unit.description, edition) {
         let (name, asked) = (unit.description.name, interface.name());
-        let offered = Offered(unit.description);
-        logger.error(format_args!("{function}: {name} does not offer {asked}, only {offered}"));
+        let offered = Offered(unit.description, edition);
+        let elsewhere = Elsewhere(unit.description, interface);
+        logger.error(format_args!("{function}: {name} does not offer {asked}, only {offered}{elsewhere}"));
         return None;
     }
     let mut made = (unit.create)();
     start_values.apply(&mut *made);
     let mut instance = Instance::new(made, interface, logger);
+    instance.edition = edition;
     instance.note(format_args!("{} instantiated", unit.description.name));
     Some(instance)
 }
 
-/// The interface types of a unit, for an error message.
-struct Offered(&'static Description);
+/// The interface types of an edition of a unit, for an error message.
+struct Offered(&'static Description, Edition);
 
 impl fmt::Display for Offered {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let offered = Interface::ALL.iter().filter(|interface| interface.is_offered_by(self.0));
+        let offered = Interface::ALL.iter().filter(|interface| interface.is_offered_by(self.0, self.1));
         offered.enumerate().try_for_each(|(index, interface)| {
             write!(formatter, "{}{}", if index == 0 { "" } else { ", " }, interface.name())
         })
+    }
+}
+
+/// Where another package of the unit offers what this one does not, for an error message; nothing if none does.
+struct Elsewhere(&'static Description, Interface);
+
+impl fmt::Display for Elsewhere {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(description, interface) = self;
+        let mut forms = Form::all_of(description);
+        match forms.find(|form| interface.is_offered_by(description, form.edition)) {
+            Some(form) => {
+                let (directory, name) = (form.directory(), description.name);
+                write!(formatter, "; its package {directory}/{name}.fmu does")
+            }
+            None => Ok(()),
+        }
     }
 }

@@ -11,6 +11,7 @@ mod error;
 mod event_mode;
 pub mod fmi2;
 pub mod fmi3;
+mod form;
 mod fraction;
 mod instance;
 mod interface;
@@ -26,6 +27,7 @@ mod version;
 
 pub use communication::CommunicationPoint;
 pub use error::CallError;
+pub use form::Form;
 pub use instance::Instance;
 pub use interface::Interface;
 pub use log::{Callback, LOG_CATEGORIES, Logger};

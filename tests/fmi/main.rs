@@ -9,6 +9,7 @@ mod capabilities;
 mod concurrency;
 mod dependencies;
 mod derivatives;
+mod editions;
 mod event_mode;
 mod instantiation;
 mod intermediate_update;
