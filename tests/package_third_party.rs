@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use maglev_fmu::package::{THIRD_PARTY, ThirdPartyError, third_party};
+use maglev_fmu::package::{THIRD_PARTY_PATH, ThirdPartyError, third_party};
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -38,16 +38,16 @@ fn linked() -> BTreeSet<String> {
 
 #[test]
 fn list_is_up_to_date() {
-    let checked_in = fs::read_to_string(root().join(THIRD_PARTY)).unwrap().replace("\r\n", "\n");
+    let checked_in = fs::read_to_string(root().join(THIRD_PARTY_PATH)).unwrap().replace("\r\n", "\n");
     assert!(
         checked_in == third_party(root()).unwrap(),
-        "{THIRD_PARTY} is not what Cargo.lock says: renew it with `cargo run -- describe`"
+        "{THIRD_PARTY_PATH} is not what Cargo.lock says: renew it with `cargo run -- describe`"
     );
 }
 
 #[test]
 fn every_linked_crate_is_listed_with_a_text() {
-    let text = fs::read_to_string(root().join(THIRD_PARTY)).unwrap().replace("\r\n", "\n");
+    let text = fs::read_to_string(root().join(THIRD_PARTY_PATH)).unwrap().replace("\r\n", "\n");
     let (list, texts) = text.split_once("\n\n\n").unwrap();
     let linked = linked();
     assert!(linked.len() > 15, "{linked:?}");

@@ -5,7 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::{
-    Form, PackageError, THIRD_PARTY, WrittenFile, model_description, replace_file, third_party, variable_text,
+    Form, PackageError, THIRD_PARTY_PATH, WrittenFile, model_description, replace_file, third_party,
+    variable_text,
 };
 use crate::unit::variable::{Kind, Variable};
 use crate::unit::{Description, StartValues, UNITS};
@@ -62,7 +63,7 @@ pub fn describe(root: &Path) -> Result<(Vec<WrittenFile>, Readme), PackageError>
 
 /// Writes the list of the crates in the shared library below `root`, which holds the project's sources.
 pub fn describe_third_party(root: &Path) -> Result<WrittenFile, PackageError> {
-    write(root.join(THIRD_PARTY), &third_party(root)?)
+    write(root.join(THIRD_PARTY_PATH), &third_party(root)?)
 }
 
 fn write(path: PathBuf, text: &str) -> Result<WrittenFile, PackageError> {

@@ -44,7 +44,7 @@ pub use parameter_file::ParameterFile;
 pub use platform::Platform;
 pub use reference_run::{ReferenceRun, Table};
 pub use related_files::{DIRECTORY as RELATED_FILES, INPUT as REFERENCE_INPUT, OUTPUT as REFERENCE_OUTPUT};
-pub use third_party::{PATH as THIRD_PARTY, ThirdPartyError, third_party};
+pub use third_party::{PATH as THIRD_PARTY_PATH, ThirdPartyError, third_party};
 
 use crate::unit::system::SYSTEMS;
 use crate::unit::{Description, StartValues, UNITS};

@@ -170,7 +170,7 @@ The texts stand below, as the crates carry them.
         document += &format!("{:<width$}  {}\n", "", row.repository);
     }
     let mut texts: Vec<(&String, &Vec<String>)> = texts.iter().collect();
-    texts.sort_by_key(|(_, crates)| *crates);
+    texts.sort_by_key(|(_, crates)| crates.first().map(|title| title.to_lowercase()));
     for (text, crates) in texts {
         let title = crates.join(", ");
         document += &format!("\n\n{title}\n{}\n\n{text}\n", "-".repeat(title.len()));
