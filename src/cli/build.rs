@@ -9,10 +9,10 @@ use maglev_fmu::unit::{Description, StartValues};
 
 use super::{report, say};
 
-/// Pack all units for FMI 2.0 and FMI 3.0
+/// Pack all units for FMI 2.0 and FMI 3.0, controllers of FMI 3.0 also with clocks
 #[derive(Debug, Args)]
 pub struct Build {
-    /// Directory for the packages, which go to its subdirectories fmi2 and fmi3
+    /// Directory for the packages, which go to its subdirectories fmi2, fmi3 and fmi3-clocked
     #[arg(long, value_name = "DIR", default_value = "dist")]
     out: PathBuf,
     /// Shared library to pack instead of the one that was built with this program; may be given once per platform

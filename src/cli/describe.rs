@@ -7,7 +7,7 @@ use maglev_fmu::package::{self, PackageError, Readme};
 
 use super::{report, say};
 
-/// Write the model descriptions and the README's tables from the units' variables
+/// Write the model descriptions, the README's tables and the list of linked crates from the sources
 #[derive(Debug, Args)]
 pub struct Describe {
     /// Root of the repository
@@ -19,6 +19,9 @@ impl Describe {
     pub fn run(&self) -> Result<(), PackageError> {
         let (written, readme) = package::describe(&self.root)?;
         written.iter().for_each(report);
+        if self.root.join("Cargo.toml").exists() {
+            report(&package::describe_third_party(&self.root)?);
+        }
         match readme {
             Readme::Written(file) => report(&file),
             Readme::Missing(path) => say(format_args!("no {}, so no tables there", path.display())),

@@ -79,15 +79,14 @@ impl Instance {
         if data_type.standard == FmiVersion::Two {
             return CallError::UnknownReference { reference, largest: self.variables.len() - 1 };
         }
-        let mut clocks = self.unit.description().clocks();
-        match clocks.find(|(known, _)| *known == reference as usize) {
+        match self.clocks().find(|(known, _)| *known == reference as usize) {
             Some((_, clock)) => CallError::IsClock { name: clock.name, reference, asked: data_type.name },
             None => self.unknown_reference(reference),
         }
     }
 
     pub(super) fn unknown_reference(&self, reference: u32) -> CallError {
-        let clocks = self.unit.description().clocks().count();
+        let clocks = self.clocks().count();
         CallError::UnknownReference { reference, largest: self.variables.len() + clocks - 1 }
     }
 

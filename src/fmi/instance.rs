@@ -8,8 +8,9 @@ use super::model_exchange::EarliestTime;
 use super::saved_state::Life;
 use super::ticking::ClockStates;
 use super::{CallError, CommunicationPoint, Function, Interface, Logger, Phase, SavedState, StateError};
+use crate::unit::sampled::ClockVariable;
 use crate::unit::variable::Variable;
-use crate::unit::{ContinuousRows, Journal, TIME, Topic, Unit};
+use crate::unit::{ContinuousRows, Edition, Journal, TIME, Topic, Unit};
 
 /// What a handle (`fmi2Component`, `fmi3Instance`) points to.
 pub struct Instance {
@@ -17,6 +18,8 @@ pub struct Instance {
     /// As made, for reset.
     pub(super) start: SavedState,
     pub(super) variables: &'static [Variable],
+    /// What the importer has read of the unit.
+    pub(super) edition: Edition,
     /// Where the table holds what moves in continuous time.
     pub(super) rows: ContinuousRows,
     pub(super) interface: Interface,
@@ -40,7 +43,7 @@ pub struct Instance {
 }
 
 impl Instance {
-    /// An instance of any unit, not only of those the library knows by token.
+    /// An instance of any unit, not only of those the library knows by token, in its plain edition.
     pub fn new(unit: Box<dyn Unit>, interface: Interface, logger: Logger) -> Result<Self, StateError> {
         let description = unit.description();
         let mut instance = Self {
@@ -48,6 +51,7 @@ impl Instance {
             variables: description.variables,
             rows: ContinuousRows::of(description),
             unit,
+            edition: Edition::Plain,
             interface,
             phase: Phase::Instantiated,
             logger,
@@ -156,6 +160,11 @@ impl Instance {
         self.restart()?;
         self.note(format_args!("reset"));
         Ok(())
+    }
+
+    /// Clocks that the importer knows of, with their value references.
+    pub(super) fn clocks(&self) -> impl Iterator<Item = (usize, &'static ClockVariable)> + use<> {
+        self.edition.clocks(self.unit.description())
     }
 
     /// What a saved state has to tell besides the unit.

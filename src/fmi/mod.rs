@@ -13,6 +13,7 @@ mod event_mode;
 mod floating_point;
 pub mod fmi2;
 pub mod fmi3;
+mod form;
 mod fraction;
 mod instance;
 mod instantiation;
@@ -30,6 +31,7 @@ mod version;
 
 pub use communication::CommunicationPoint;
 pub use error::CallError;
+pub use form::Form;
 pub use instance::Instance;
 pub use interface::Interface;
 pub use log::{Callback, LOG_CATEGORIES, Logger};

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use super::FmiVersion;
+use super::{FmiVersion, ThirdPartyError};
 use crate::unit::UnitError;
 
 /// Why packaging failed: the action and the path or value that it failed on.
@@ -18,6 +18,8 @@ pub enum PackageError {
     Archive { path: PathBuf, source: zip::result::ZipError },
     #[error("cannot write the FMI {version} model description of {unit}")]
     ModelDescription { unit: &'static str, version: FmiVersion, source: quick_xml::SeError },
+    #[error("cannot list the crates in the shared library")]
+    ThirdParty(#[from] ThirdPartyError),
     #[error("cannot write the manifest of related files of {unit}")]
     Manifest { unit: &'static str, source: quick_xml::SeError },
     #[error("cannot write the system structure of {system}")]

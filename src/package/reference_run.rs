@@ -3,6 +3,9 @@
 //! The inputs are those that the unit meets in its loop, with the package's start values in the unit and those of the
 //! table in its partner. After a third of the run the inputs that the loop leaves free, such as a reference or a disturbing
 //! force, step by a twentieth of their nominal value, so that they matter as well.
+//!
+//! Some importers set the first row of inputs before the end of the initialisation, some after it. The run is the same
+//! either way: an input that an output at the start follows from keeps its start value over the first step.
 
 use crate::unit::system::{SYSTEMS, System};
 use crate::unit::variable::{Causality, Kind, Variable};
@@ -114,6 +117,9 @@ struct Bench {
     /// Which of the units is looked at.
     place: usize,
     free: Vec<usize>,
+    /// Inputs from which outputs at the start follow.
+    initial: Vec<usize>,
+    has_started: bool,
 }
 
 /// Places in a bench with a loop, in the order of stepping.
@@ -142,7 +148,8 @@ impl Bench {
         };
         let rows = description.variables.iter().enumerate();
         let free = rows.filter(|(_, variable)| is_free(variable)).map(|(reference, _)| reference).collect();
-        Ok(Self { units, system, place, free })
+        let initial = initial_inputs(description);
+        Ok(Self { units, system, place, free, initial, has_started: false })
     }
 
     fn unit(&self) -> &dyn Unit {
@@ -176,7 +183,11 @@ impl Bench {
                     let value = self.units[source].values()[reference(&*self.units[source], output)];
                     let target = &mut self.units[place];
                     let reference = reference(&**target, input);
-                    target.values_mut()[reference] = value;
+                    let keeps_start =
+                        !self.has_started && place == self.place && self.initial.contains(&reference);
+                    if !keeps_start {
+                        target.values_mut()[reference] = value;
+                    }
                 }
             }
             if place == self.place {
@@ -184,8 +195,17 @@ impl Bench {
             }
             self.units[place].advance(step_size, &mut Silence)?;
         }
+        self.has_started = true;
         Ok(seen)
     }
+}
+
+/// Value references of the inputs from which outputs at the end of the initialisation follow.
+fn initial_inputs(description: &'static Description) -> Vec<usize> {
+    let outputs = description.variables.iter().filter(|variable| variable.causality == Causality::Output);
+    let sources = outputs.flat_map(|output| output.initially_from).filter_map(|name| description.find(name));
+    let inputs = sources.filter(|(_, source)| source.causality == Causality::Input);
+    inputs.map(|(reference, _)| reference).collect()
 }
 
 /// Value reference of an end of a wire.

@@ -3,6 +3,7 @@
 
 pub mod continuous;
 pub mod description;
+pub mod edition;
 mod end_stop_events;
 mod levitated_ball;
 mod levitated_ball_controller;
@@ -27,6 +28,7 @@ use core::fmt;
 
 pub use continuous::{ContinuousRows, ContinuousUnit};
 pub use description::{Description, Token};
+pub use edition::Edition;
 pub use levitated_ball_controller::LevitatedBallController;
 pub use levitated_ball_plant::LevitatedBallPlant;
 pub use maglev_rig_controller::MaglevRigController;
@@ -166,6 +168,12 @@ pub static UNITS: &[&UnitType] = &[
     &MAGLEV_RIG_CONTROLLER,
 ];
 
+/// Every unit in every edition that suits it.
+pub fn editions() -> impl Iterator<Item = (&'static UnitType, Edition)> {
+    let all = UNITS.iter().flat_map(|unit| Edition::ALL.map(|edition| (*unit, edition)));
+    all.filter(|(unit, edition)| edition.suits(unit.description))
+}
+
 /// Start values of a table.
 fn start_values<const N: usize>(variables: &[variable::Variable; N]) -> [f64; N] {
     core::array::from_fn(|reference| variables[reference].start)
@@ -208,10 +216,9 @@ mod tests {
 
     #[test]
     fn tokens_differ() {
-        for (index, unit) in UNITS.iter().enumerate() {
-            for other in &UNITS[..index] {
-                assert_ne!(unit.description.token(), other.description.token());
-            }
+        let tokens: Vec<_> = editions().map(|(unit, edition)| edition.token(unit.description)).collect();
+        for (index, token) in tokens.iter().enumerate() {
+            assert!(!tokens[..index].contains(token), "{token:?}");
         }
     }
 }

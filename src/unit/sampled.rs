@@ -30,9 +30,9 @@ pub struct ClockVariable {
 
 /// Every sampled unit has these two, with the value references that follow those of its table.
 ///
-/// No other variable is bound to them (FMI 3.0: attribute `clocks`). Bound variables may be read at a tick only, so
-/// that importers without events could not read the outputs at all; the outputs are states that hold what the last
-/// tick has left, as they do in FMI 2.0.
+/// No variable but `ticked` itself is bound to one of them (FMI 3.0: attribute `clocks`). Bound variables may be read at
+/// a tick only, so that importers without events could not read the outputs at all; the outputs are states that hold
+/// what the last tick has left, as they do in FMI 2.0.
 pub static CLOCKS: [ClockVariable; 2] = [
     ClockVariable {
         name: "tick",

@@ -9,6 +9,7 @@ mod capabilities;
 mod concurrency;
 mod dependencies;
 mod derivatives;
+mod editions;
 mod event_mode;
 mod failing_memory;
 #[cfg(target_arch = "x86_64")]

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 from fmpy import read_model_description, simulate_fmu
-from packages import dist, fmu_path
+from packages import all_fmus, fmu_path
 
 
 class Run(NamedTuple):
@@ -55,7 +55,7 @@ RUNS = {
 
 def plants() -> list[Path]:
     """All FMUs for model exchange."""
-    paths = sorted(dist().glob("fmi[23]/*.fmu"))
+    paths = all_fmus()
     return [path for path in paths if read_model_description(path).modelExchange is not None]
 
 

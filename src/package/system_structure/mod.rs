@@ -14,7 +14,7 @@ use super::contents::{Entry, diagram_name, owned};
 use super::documentation::STYLE;
 use super::loop_diagram::loop_diagram;
 use super::model_description::document;
-use super::{FmiVersion, GenerationTime, PackageError};
+use super::{Form, GenerationTime, PackageError};
 use crate::unit::system::System;
 use crate::unit::{StartValues, UnitType};
 
@@ -23,8 +23,8 @@ const DESCRIPTION: &str = "http://ssp-standard.org/SSP1/SystemStructureDescripti
 const PARAMETER_VALUES: &str = "http://ssp-standard.org/SSP1/SystemStructureParameterValues";
 const VERSION: &str = "1.0";
 
-/// Version of the units in a system.
-pub const FMI_VERSION: FmiVersion = FmiVersion::Two;
+/// Form of the units in a system.
+pub const FORM: Form = Form::FMI2;
 
 /// Instance of a unit in a system.
 struct Component {
@@ -52,8 +52,8 @@ impl Component {
     }
 }
 
-/// All files of the package of one system, sorted by path. `units` are the packages of all units by name, made for
-/// [`FMI_VERSION`], with their start values.
+/// All files of the package of one system, sorted by path. `units` are the packages of all units by name, made in the
+/// form [`FORM`], with their start values.
 pub fn contents<'a>(
     system: &'static System,
     time: GenerationTime,
