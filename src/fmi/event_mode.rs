@@ -16,8 +16,7 @@ pub(super) struct EventEnd {
 impl Instance {
     pub(super) fn enter_event_mode(&mut self) -> Result<(), CallError> {
         match self.interface {
-            Interface::ModelExchange => self.enter_event_of_integration()?,
-            Interface::CoSimulationWithEvents { .. } => {}
+            Interface::ModelExchange | Interface::CoSimulationWithEvents { .. } => {}
             Interface::CoSimulation | Interface::ScheduledExecution => {
                 return Err(CallError::NotOffered("event mode, which the instance was not made for"));
             }
@@ -26,12 +25,11 @@ impl Instance {
         Ok(())
     }
 
-    /// Discrete transitions. Those of model exchange are settled by one call, and there are no time events. In
+    /// Discrete transitions. Those of model exchange are settled by one call; its time events are readings of a sensor. In
     /// co-simulation the tick that is due is run, if there is one, and another iteration shows its results.
     pub(super) fn update_discrete_states(&mut self) -> Result<EventEnd, CallError> {
         if self.interface == Interface::ModelExchange {
-            let have_states_changed = self.update_states_of_integration()?;
-            return Ok(EventEnd { is_unfinished: false, have_states_changed, next_event_time: None });
+            return self.update_states_of_integration();
         }
         let unit = sampled(&mut *self.unit)?;
         let is_due = unit.clock().is_due();

@@ -10,7 +10,7 @@ use super::ticking::ClockStates;
 use super::{CallError, Callback, CommunicationPoint, Function, Interface, Logger, Phase};
 use crate::unit::start_values::read_token;
 use crate::unit::variable::Variable;
-use crate::unit::{ContinuousRows, Description, Journal, TIME, Topic, Unit};
+use crate::unit::{ContinuousRows, Description, Journal, Solver, TIME, Topic, Unit};
 
 /// What a handle (`fmi2Component`, `fmi3Instance`) points to.
 pub struct Instance {
@@ -40,7 +40,8 @@ pub struct Instance {
 
 impl Instance {
     /// An instance of any unit, not only of those the library knows by token.
-    pub fn new(unit: Box<dyn Unit>, interface: Interface, logger: Logger) -> Self {
+    pub fn new(mut unit: Box<dyn Unit>, interface: Interface, logger: Logger) -> Self {
+        say_who_solves(&mut *unit, interface);
         Self {
             template: unit.boxed_clone(),
             variables: unit.description().variables,
@@ -118,6 +119,7 @@ impl Instance {
     }
 
     pub(super) fn exit_initialization_mode(&mut self) -> Result<(), CallError> {
+        self.unit.check_parameters()?;
         self.is_stale = true;
         self.refresh()?;
         self.phase = self.interface.first_phase();
@@ -176,11 +178,23 @@ impl Instance {
         self.is_stale = is_stale;
         self.needs_evaluation = needs_evaluation;
         self.clocks = clocks;
+        // The state may be that of an instance with another interface.
+        let is_new = say_who_solves(&mut *self.unit, self.interface);
+        self.is_stale |= is_new && matches!(phase, Phase::Instantiated | Phase::InitializationMode);
     }
 
     pub(super) fn note(&mut self, message: fmt::Arguments<'_>) {
         self.logger.note(Topic::Events, message);
     }
+}
+
+/// Tells the unit who solves it; whether that is new to it.
+fn say_who_solves(unit: &mut dyn Unit, interface: Interface) -> bool {
+    let solver = match interface {
+        Interface::ModelExchange => Solver::Importer,
+        _ => Solver::Unit,
+    };
+    unit.continuous().is_some_and(|unit| unit.set_solver(solver))
 }
 
 /// Makes an instance of the unit whose token is `token`, with the start values in it, for an interface type, or logs why

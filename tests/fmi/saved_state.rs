@@ -345,8 +345,8 @@ fn foreign_bytes_are_refused_by_name() {
             }
             let mut bytes = component.saved_bytes();
             bytes[8] = 77;
-            assert_no_state(&component, &bytes, &["version 77 of the format: expected 1"]);
-            bytes[8] = 1;
+            assert_no_state(&component, &bytes, &["version 77 of the format: expected 2"]);
+            bytes[8] = 2;
             bytes[20] ^= 1;
             assert_no_state(&component, &bytes, &["a state of another release", "expected "]);
             assert_no_state(&component, &[b'x'; 200], &["the bytes begin with", "the mark of a saved state"]);
