@@ -163,3 +163,7 @@ def test_no_start_with_equal_prefilters(fmi_version: int, open_fmu: Callable[[Pa
     with pytest.raises(FMICallException):
         controller.initialize({"observer.prefilter[1]": 300.0})
     assert "observer.prefilter[1]" in messages[-1] and "300 1/s" in messages[-1], messages
+    # Still in initialisation.
+    controller.set({"observer.prefilter[1]": 100.0})
+    controller.slave.exitInitializationMode()
+    controller.step(0.0, 1e-4)
