@@ -1,6 +1,7 @@
 //! Reading and writing variables by value reference.
 
 use super::{CallError, FmiVersion, Instance, Phase};
+use crate::unit::LARGEST_TABLE;
 use crate::unit::variable::{Causality, Kind, Variability, Variable};
 
 /// A data type of a standard: its name there and the kinds of variables it carries.
@@ -49,18 +50,38 @@ impl Instance {
             variable.check(convert(*value))?;
             parameters_changed |= variable.causality == Causality::Parameter;
         }
+        let is_before_first_step = matches!(self.phase, Phase::Instantiated | Phase::InitializationMode);
+        if parameters_changed && !is_before_first_step {
+            return self.tune(references.iter().zip(values).map(|(row, value)| (*row, convert(*value))));
+        }
         let target = self.unit.values_mut();
         for (reference, value) in references.iter().zip(values) {
             target[*reference as usize] = convert(*value);
         }
-        if matches!(self.phase, Phase::Instantiated | Phase::InitializationMode) {
+        if is_before_first_step {
             self.is_stale = true;
-            return Ok(());
+        } else {
+            self.needs_evaluation = true;
         }
+        Ok(())
+    }
+
+    /// Gives checked values to tunable parameters and perhaps inputs; all or, when the parameters do not fit together,
+    /// none.
+    fn tune(&mut self, assignments: impl Iterator<Item = (u32, f64)>) -> Result<(), CallError> {
+        let mut before = [0.0; LARGEST_TABLE];
+        let values = self.unit.values_mut();
+        let before = &mut before[..values.len()];
+        before.copy_from_slice(values);
+        for (reference, value) in assignments {
+            values[reference as usize] = value;
+        }
+        if let Err(error) = self.unit.check_parameters() {
+            self.unit.values_mut().copy_from_slice(before);
+            return Err(error.into());
+        }
+        self.unit.adopt_parameters();
         self.needs_evaluation = true;
-        if parameters_changed {
-            self.unit.adopt_parameters();
-        }
         Ok(())
     }
 

@@ -10,7 +10,7 @@ use super::ticking::ClockStates;
 use super::{CallError, CommunicationPoint, Function, Interface, Logger, Phase, SavedState, StateError};
 use crate::unit::sampled::ClockVariable;
 use crate::unit::variable::Variable;
-use crate::unit::{ContinuousRows, Edition, Journal, TIME, Topic, Unit};
+use crate::unit::{ContinuousRows, Edition, Journal, Solver, TIME, Topic, Unit};
 
 /// What a handle (`fmi2Component`, `fmi3Instance`) points to.
 pub struct Instance {
@@ -44,7 +44,8 @@ pub struct Instance {
 
 impl Instance {
     /// An instance of any unit, not only of those the library knows by token, in its plain edition.
-    pub fn new(unit: Box<dyn Unit>, interface: Interface, logger: Logger) -> Result<Self, StateError> {
+    pub fn new(mut unit: Box<dyn Unit>, interface: Interface, logger: Logger) -> Result<Self, StateError> {
+        say_who_solves(&mut *unit, interface);
         let description = unit.description();
         let mut instance = Self {
             start: SavedState::new(description),
@@ -130,6 +131,7 @@ impl Instance {
     }
 
     pub(super) fn exit_initialization_mode(&mut self) -> Result<(), CallError> {
+        self.unit.check_parameters()?;
         self.is_stale = true;
         self.refresh()?;
         self.phase = self.interface.first_phase();
@@ -187,9 +189,21 @@ impl Instance {
         self.needs_evaluation = needs_evaluation;
         self.clocks = clocks;
         self.step = None;
+        // The state may be that of an instance with another interface.
+        let is_new = say_who_solves(&mut *self.unit, self.interface);
+        self.is_stale |= is_new && matches!(phase, Phase::Instantiated | Phase::InitializationMode);
     }
 
     pub(super) fn note(&mut self, message: fmt::Arguments<'_>) {
         self.logger.note(Topic::Events, message);
     }
+}
+
+/// Tells the unit who solves it; whether that is new to it.
+fn say_who_solves(unit: &mut dyn Unit, interface: Interface) -> bool {
+    let solver = match interface {
+        Interface::ModelExchange => Solver::Importer,
+        _ => Solver::Unit,
+    };
+    unit.continuous().is_some_and(|unit| unit.set_solver(solver))
 }

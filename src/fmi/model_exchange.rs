@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::event_mode::EventEnd;
 use super::{CallError, Instance, Interface, Phase};
 use crate::unit::continuous::nominal;
 use crate::unit::value::ValueError;
@@ -56,23 +57,13 @@ impl Instance {
         self.unit.continuous().ok_or(CallError::NotOffered("the unit has no continuous states"))
     }
 
-    /// Readings are taken with the inputs that the importer set last, the left limit at the event.
-    pub(super) fn enter_event_of_integration(&mut self) -> Result<(), CallError> {
-        let comes_from_continuous_time = self.phase == Phase::ContinuousTimeMode;
-        let now = self.communication.now();
+    /// Discrete transitions; one call settles them all.
+    pub(super) fn update_states_of_integration(&mut self) -> Result<EventEnd, CallError> {
         let unit = self.exchanged()?;
-        if comes_from_continuous_time {
-            unit.enter_event();
-        }
-        self.earliest_time = EarliestTime::at_event(now);
-        Ok(())
-    }
-
-    /// Discrete transitions; whether a continuous state jumped. One call settles them all.
-    pub(super) fn update_states_of_integration(&mut self) -> Result<bool, CallError> {
-        let have_states_changed = self.exchanged()?.update_discrete_states();
+        let have_states_changed = unit.update_discrete_states();
+        let next_event_time = unit.next_event_time();
         self.needs_evaluation = true;
-        Ok(have_states_changed)
+        Ok(EventEnd { is_unfinished: false, have_states_changed, next_event_time })
     }
 
     pub(super) fn enter_continuous_time_mode(&mut self) -> Result<(), CallError> {

@@ -5,6 +5,7 @@ pub mod continuous;
 pub mod description;
 pub mod edition;
 mod end_stop_events;
+mod input_ramp;
 mod levitated_ball;
 mod levitated_ball_controller;
 mod levitated_ball_plant;
@@ -19,14 +20,16 @@ pub mod persistence;
 pub mod quantity;
 pub mod sample_clock;
 pub mod sampled;
+mod sensor;
 pub mod start_values;
 pub mod system;
 pub mod value;
 pub mod variable;
+pub mod work;
 
 use core::fmt;
 
-pub use continuous::{ContinuousRows, ContinuousUnit};
+pub use continuous::{ContinuousRows, ContinuousUnit, Solver};
 pub use description::{Description, Token};
 pub use edition::Edition;
 pub use levitated_ball_controller::LevitatedBallController;
@@ -41,6 +44,7 @@ pub use sampled::SampledUnit;
 pub use start_values::StartValues;
 pub use system::System;
 use thiserror::Error;
+use value::Readable;
 
 /// Kinds of remarks a unit makes while it runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,12 +79,17 @@ pub enum UnitError {
     InputLeavesRange(value::ValueError),
     #[error("{name} would become {value} {unit} within the step: expected a finite number")]
     Diverged { name: &'static str, value: f64, unit: &'static str },
-    #[error("{ticks} ticks within one step of {duration} s: expected at most {limit}")]
-    TooManyTicks { ticks: i64, duration: f64, limit: i64 },
-    #[error("a step of {duration} s: expected at most {limit} s")]
+    #[error(
+        "a step of {duration} s: expected at most {limit} s, about a second of computing with these parameters",
+        duration = Readable(*duration), limit = Readable(*limit)
+    )]
     StepTooLong { duration: f64, limit: f64 },
-    #[error("{first} and {second} are both {value} {unit}: expected two different numbers")]
+    #[error(
+        "{first} and {second} are both {value} {unit}: expected two different numbers", value = Readable(*value)
+    )]
     Equal { first: &'static str, second: &'static str, value: f64, unit: &'static str },
+    #[error("{name} = {value} {unit}: expected {expected}", value = Readable(*value))]
+    Unusable { name: &'static str, value: f64, unit: &'static str, expected: &'static str },
 }
 
 /// An exported unit: a flat array of values, indexed by value reference, and what it takes to advance them.
@@ -98,6 +107,12 @@ pub trait Unit: Persistent + Send {
 
     /// Takes over tunable parameters that were set since the last step; initialisation does so, too.
     fn adopt_parameters(&mut self);
+
+    /// Whether the parameters fit together. Asked when they are all set, at the end of initialisation and when tunable
+    /// ones were set since: in between an importer may be about to set another one.
+    fn check_parameters(&self) -> Result<(), UnitError> {
+        Ok(())
+    }
 
     /// Computes all calculated values and the internal state from parameters and inputs at `start_time` \[s\].
     /// May be called again after a parameter changed, until the first [`Unit::advance`].
@@ -123,6 +138,9 @@ pub trait Unit: Persistent + Send {
         true
     }
 }
+
+/// Largest number of rows of a table.
+pub const LARGEST_TABLE: usize = 128;
 
 /// Value reference of the simulation time, the first row of every table.
 pub const TIME: usize = 0;
@@ -188,6 +206,7 @@ mod tests {
     fn tables_are_consistent() {
         for unit in UNITS {
             let variables = unit.description.variables;
+            assert!(variables.len() <= LARGEST_TABLE, "{}", unit.description.name);
             assert_eq!(variables[TIME].causality, Causality::Independent, "{}", unit.description.name);
             for (reference, variable) in variables.iter().enumerate() {
                 let name = variable.name;

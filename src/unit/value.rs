@@ -22,7 +22,7 @@ pub enum ValueError {
 }
 
 /// A number for people: with an exponent where it would have many zeros otherwise.
-struct Readable(f64);
+pub(super) struct Readable(pub(super) f64);
 
 impl fmt::Display for Readable {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {

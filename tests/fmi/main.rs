@@ -12,20 +12,24 @@ mod derivatives;
 mod editions;
 mod event_mode;
 mod failing_memory;
+mod fitting_parameters;
 #[cfg(target_arch = "x86_64")]
 mod floating_point;
 mod instantiation;
 mod intermediate_update;
 mod life_cycle;
 mod logging;
+mod long_steps;
 mod model_exchange;
 mod panic;
 mod random_calls;
 mod random_exchange;
 mod refused_references;
 mod refused_values;
+mod round_trips;
 mod saved_state;
 mod scheduled_execution;
+mod sensor_readings;
 mod steps;
 mod stop_time;
 #[cfg(feature = "tools")]

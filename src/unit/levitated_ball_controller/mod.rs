@@ -8,7 +8,7 @@ pub use table::DESCRIPTION;
 use table::*;
 
 use super::sample_clock::SampleClock;
-use super::sampled::{LARGEST_NUMBER_OF_TICKS, SampledUnit};
+use super::sampled::SampledUnit;
 use super::{Description, Journal, Topic, Unit, UnitError, start_values};
 use crate::controller::ball_feedback_linearisation::BallFeedbackLinearisation;
 use crate::controller::saturate;
@@ -17,6 +17,9 @@ use crate::plant::levitated_ball::State;
 use crate::signal::{BallReferenceFilter, SmoothReference};
 use serde::{Deserialize, Serialize};
 use serde_big_array::BigArray;
+
+/// What a tick costs at most \[s\], see [`super::work`].
+const COST_OF_TICK: f64 = 0.8e-6;
 
 /// The controller as a unit.
 #[derive(Clone, Serialize, Deserialize)]
@@ -133,6 +136,10 @@ impl Unit for LevitatedBallController {
         self.law = law(&self.values);
     }
 
+    fn check_parameters(&self) -> Result<(), UnitError> {
+        check_prefilters(&self.values)
+    }
+
     fn initialise(&mut self, start_time: f64) -> Result<(), UnitError> {
         let values = &mut self.values;
         self.law = law(values);
@@ -150,9 +157,10 @@ impl Unit for LevitatedBallController {
     }
 
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError> {
-        check_prefilters(&self.values)?;
-        for k in self.clock.advance_at_most(duration, LARGEST_NUMBER_OF_TICKS)? {
-            self.tick_at(self.clock.time_of(k), journal);
+        let (clock, ticks) = self.affordable_ticks(duration)?;
+        self.clock = clock;
+        for k in ticks {
+            self.tick_at(clock.time_of(k), journal);
         }
         Ok(())
     }
@@ -178,5 +186,9 @@ impl SampledUnit for LevitatedBallController {
 
     fn tick(&mut self, time: f64, journal: &mut dyn Journal) {
         self.tick_at(time, journal);
+    }
+
+    fn cost_of_tick(&self) -> f64 {
+        COST_OF_TICK
     }
 }

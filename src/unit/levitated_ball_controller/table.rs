@@ -55,7 +55,7 @@ pub(super) const STATE: f64 = 2.0;
 const fn prefilter(name: &'static str, start: f64) -> Variable {
     Variable::parameter(name, Kind::Real(&RATE), start)
         .range(1e-2, 1e6)
-        .describe("alpha, rate of a low-pass that makes the regression; with two equal ones no step is made")
+        .describe("alpha, rate of a low-pass that makes the regression; the two have to differ")
 }
 
 const fn filter(name: &'static str, start: f64) -> Variable {

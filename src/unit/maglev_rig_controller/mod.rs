@@ -3,12 +3,14 @@
 mod parameters;
 mod table;
 
-use parameters::{Law, Measurement, initial_estimate, law, limits, observer_settings};
+use parameters::{
+    Law, Measurement, check_input_gain, cost_of_tick, initial_estimate, law, limits, observer_settings,
+};
 pub use table::DESCRIPTION;
 use table::*;
 
 use super::sample_clock::SampleClock;
-use super::sampled::{LARGEST_NUMBER_OF_TICKS, SampledUnit};
+use super::sampled::SampledUnit;
 use super::{Description, Journal, Topic, Unit, UnitError, start_values};
 use crate::controller::digital_pid::DigitalPid;
 use crate::controller::saturate_between;
@@ -162,6 +164,10 @@ impl Unit for MaglevRigController {
         self.hears_applied_voltage = values[OBSERVER_VOLTAGE_SOURCE] == APPLIED;
     }
 
+    fn check_parameters(&self) -> Result<(), UnitError> {
+        check_input_gain(&self.values)
+    }
+
     fn initialise(&mut self, start_time: f64) -> Result<(), UnitError> {
         self.adopt_parameters();
         let values = &mut self.values;
@@ -181,8 +187,10 @@ impl Unit for MaglevRigController {
     }
 
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError> {
-        for k in self.clock.advance_at_most(duration, LARGEST_NUMBER_OF_TICKS)? {
-            self.tick_at(self.clock.time_of(k), journal);
+        let (clock, ticks) = self.affordable_ticks(duration)?;
+        self.clock = clock;
+        for k in ticks {
+            self.tick_at(clock.time_of(k), journal);
         }
         Ok(())
     }
@@ -212,5 +220,9 @@ impl SampledUnit for MaglevRigController {
 
     fn tick(&mut self, time: f64, journal: &mut dyn Journal) {
         self.tick_at(time, journal);
+    }
+
+    fn cost_of_tick(&self) -> f64 {
+        cost_of_tick(&self.values)
     }
 }

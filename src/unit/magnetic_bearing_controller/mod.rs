@@ -3,12 +3,12 @@
 mod parameters;
 mod table;
 
-use parameters::{initial_estimate, law, observer_settings};
+use parameters::{cost_of_tick, initial_estimate, law, observer_settings};
 pub use table::DESCRIPTION;
 use table::*;
 
 use super::sample_clock::SampleClock;
-use super::sampled::{LARGEST_NUMBER_OF_TICKS, SampledUnit};
+use super::sampled::SampledUnit;
 use super::{Description, Journal, Topic, Unit, UnitError, start_values};
 use crate::controller::{BearingLaw, saturate};
 use crate::observer::{BearingObserver, Estimate};
@@ -151,8 +151,10 @@ impl Unit for MagneticBearingController {
     }
 
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError> {
-        for k in self.clock.advance_at_most(duration, LARGEST_NUMBER_OF_TICKS)? {
-            self.tick_at(self.clock.time_of(k), journal);
+        let (clock, ticks) = self.affordable_ticks(duration)?;
+        self.clock = clock;
+        for k in ticks {
+            self.tick_at(clock.time_of(k), journal);
         }
         Ok(())
     }
@@ -179,5 +181,9 @@ impl SampledUnit for MagneticBearingController {
 
     fn tick(&mut self, time: f64, journal: &mut dyn Journal) {
         self.tick_at(time, journal);
+    }
+
+    fn cost_of_tick(&self) -> f64 {
+        cost_of_tick(&self.values)
     }
 }
