@@ -1,11 +1,12 @@
 //! `maglev-fmu describe`
 
+use std::error::Error;
 use std::path::PathBuf;
 
 use clap::Args;
-use maglev_fmu::package::{self, PackageError, Readme};
+use maglev_fmu::package::{self, Readme};
 
-use super::{report, say};
+use super::output::{report, say};
 
 /// Write the model descriptions and the README's tables from the units' variables
 #[derive(Debug, Args)]
@@ -16,16 +17,15 @@ pub struct Describe {
 }
 
 impl Describe {
-    pub fn run(&self) -> Result<(), PackageError> {
+    pub fn run(&self) -> Result<(), Box<dyn Error>> {
         let (written, readme) = package::describe(&self.root)?;
-        written.iter().for_each(report);
-        match readme {
+        written.iter().try_for_each(report)?;
+        Ok(match readme {
             Readme::Written(file) => report(&file),
             Readme::Missing(path) => say(format_args!("no {}, so no tables there", path.display())),
             Readme::NoMarkers(path) => {
-                say(format_args!("{} left alone: it lacks the markers for tables", path.display()));
+                say(format_args!("{} left alone: it lacks the markers for tables", path.display()))
             }
-        }
-        Ok(())
+        }?)
     }
 }

@@ -7,7 +7,7 @@ use maglev_fmu::unit::system::{SYSTEMS, System};
 use maglev_fmu::unit::variable::{Causality, Kind, Variable};
 use maglev_fmu::unit::{Silence, Unit};
 
-use super::say;
+use super::output::Lines;
 
 /// Run a system without FMI and print every bit, to compare an importer with
 ///
@@ -46,10 +46,11 @@ impl Trace {
         controller.initialise(0.0)?;
         let step_size = self.step_size.unwrap_or_else(|| *value(&mut *controller, "sample_time"));
         let (plant_outputs, controller_outputs) = (real_outputs(&*plant), real_outputs(&*controller));
-        say(format_args!(
+        let mut lines = Lines::new();
+        lines.say(format_args!(
             "{}",
             [header("plant", &plant_outputs), header("controller", &controller_outputs)].join(",")
-        ));
+        ))?;
         for _ in 0..self.steps {
             let mut row = bits(&*plant, &plant_outputs);
             pass_on(&mut *plant, &mut *controller, self.system.sensing);
@@ -57,9 +58,9 @@ impl Trace {
             row.extend(bits(&*controller, &controller_outputs));
             pass_on(&mut *controller, &mut *plant, self.system.actuation);
             plant.advance(step_size, &mut Silence)?;
-            say(format_args!("{}", row.join(",")));
+            lines.say(format_args!("{}", row.join(",")))?;
         }
-        Ok(())
+        Ok(lines.finish()?)
     }
 }
 

@@ -12,6 +12,7 @@ mod event_mode;
 pub mod fmi2;
 pub mod fmi3;
 mod fraction;
+mod function_names;
 mod instance;
 mod interface;
 mod intermediate_update;
@@ -26,6 +27,7 @@ mod version;
 
 pub use communication::CommunicationPoint;
 pub use error::CallError;
+pub use function_names::function_names;
 pub use instance::Instance;
 pub use interface::Interface;
 pub use log::{Callback, LOG_CATEGORIES, Logger};

@@ -12,7 +12,9 @@
 //! Random numbers are drawn serially and costs are computed in parallel: a seed gives the same search on any number of
 //! threads.
 
-use argmin::core::{CostFunction, Error, Executor, KV, PopulationState, Problem, Solver};
+use argmin::core::{
+    CostFunction, Error, Executor, KV, PopulationState, Problem, Solver, TerminationReason, TerminationStatus,
+};
 use argmin_math::ArgminRandom;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::SeedableRng;
@@ -40,6 +42,8 @@ pub struct Optimum {
     pub history: Vec<Iteration>,
     /// Positions that were asked for, those outside the box included.
     pub evaluations: u64,
+    /// The search ended before its last iteration, because a diverging swarm had left the floating-point numbers.
+    pub has_diverged: bool,
 }
 
 /// Searches the box for the smallest cost. Costs that are not numbers count as infinite. `watch` sees every iteration.
@@ -54,6 +58,7 @@ pub fn minimise(
         bounds,
         random: Xoshiro256PlusPlus::seed_from_u64(settings.seed),
         history: Vec::new(),
+        has_diverged: false,
         watch,
     };
     let result = Executor::new(Boxed { cost, bounds }, swarm)
@@ -63,6 +68,7 @@ pub fn minimise(
     Ok(Optimum {
         position: result.state.individual.map(|particle| particle.best_position).unwrap_or_default(),
         cost: result.state.cost,
+        has_diverged: result.solver.has_diverged,
         history: result.solver.history,
         evaluations: result.problem.counts.values().sum(),
     })
@@ -101,6 +107,8 @@ struct Swarm<'a, W> {
     bounds: &'a [Range],
     random: Xoshiro256PlusPlus,
     history: Vec<Iteration>,
+    /// A particle flew so far that its position is no finite number any more: (14) says nothing about the next one.
+    has_diverged: bool,
     watch: W,
 }
 
@@ -134,16 +142,17 @@ impl<W: FnMut(&Iteration)> Swarm<'_, W> {
 
     /// Hands the swarm back to the state, its best particle in front, and tells about it.
     fn report(&mut self, state: State, population: Vec<Particle>, best: Particle) -> State {
-        let squares = population.iter().flat_map(|particle| {
-            let shares = particle.velocity.iter().zip(self.bounds);
-            shares.map(|(velocity, (low, high))| velocity / (high - low)).map(|share| share * share)
+        let shares = population.iter().flat_map(|particle| {
+            let coordinates = particle.velocity.iter().zip(self.bounds);
+            coordinates.map(|(velocity, (low, high))| velocity / (high - low))
         });
-        let count = population.len() * self.bounds.len();
         let iteration = Iteration {
             number: self.history.len() as u64,
             best_cost: best.best_cost,
-            relative_velocity: (squares.sum::<f64>() / count as f64).sqrt(),
+            relative_velocity: root_mean_square(shares),
         };
+        let mut coordinates = population.iter().flat_map(|particle| &particle.position);
+        self.has_diverged = !coordinates.all(|coordinate| coordinate.is_finite());
         self.history.push(iteration);
         (self.watch)(&iteration);
         let cost = best.best_cost;
@@ -208,6 +217,26 @@ where
         }
         Ok((self.report(state, population, best), None))
     }
+
+    fn terminate(&mut self, _state: &State) -> TerminationStatus {
+        if self.has_diverged {
+            TerminationStatus::Terminated(TerminationReason::SolverExit("the swarm has diverged".to_owned()))
+        } else {
+            TerminationStatus::NotTerminated
+        }
+    }
+}
+
+/// Squares that overflow are taken of the values over the largest.
+fn root_mean_square(values: impl Iterator<Item = f64> + Clone) -> f64 {
+    let count = values.clone().count() as f64;
+    let root = |scale: f64| (values.clone().map(|value| (value / scale) * (value / scale)).sum::<f64>() / count).sqrt();
+    let plain = root(1.0);
+    if plain.is_finite() {
+        return plain;
+    }
+    let largest = values.clone().map(f64::abs).fold(0.0, f64::max);
+    largest * root(largest)
 }
 
 #[cfg(test)]
@@ -277,6 +306,23 @@ mod tests {
         let velocity = |number: usize| optimum.history[number].relative_velocity;
         assert!(velocity(60) > 10.0 && velocity(60) > 10.0 * velocity(10), "{}", velocity(60));
         assert!(BOX.iter().zip(&optimum.position).all(|((low, high), value)| (low..=high).contains(&value)));
+    }
+
+    /// Guards: positions overflow after some 7000 iterations, and no share of an infinite way can be drawn.
+    #[test]
+    fn a_swarm_that_diverges_ends_with_the_best_so_far() {
+        let settings = SwarmSettings { iterations: 14_000, ..SwarmSettings::PRINTED };
+        let mut seen = Vec::new();
+        let optimum = minimise(valley, &BOX, &settings, |iteration| seen.push(*iteration)).unwrap();
+        assert!(optimum.has_diverged && seen == optimum.history);
+        let last = optimum.history.len() - 1;
+        assert!((1_000..14_000).contains(&last), "{last} iterations");
+        assert!(optimum.history[..last].iter().all(|iteration| iteration.relative_velocity.is_finite()));
+        // No further iteration, no other result.
+        let in_time = SwarmSettings { iterations: last as u64 - 1, ..settings };
+        let in_time = minimise(valley, &BOX, &in_time, |_| ()).unwrap();
+        assert!(!in_time.has_diverged);
+        assert_eq!((in_time.cost, in_time.position), (optimum.cost, optimum.position));
     }
 
     #[test]
