@@ -25,8 +25,9 @@ fn write_beside(path: &Path, permissions: Option<Permissions>, contents: &[u8]) 
     if let Some(permissions) = permissions {
         builder.permissions(permissions);
     }
-    let mut file = builder.tempfile_in(directory.unwrap_or(Path::new(".")))?;
-    file.write_all(contents)?;
+    let file = builder.tempfile_in(directory.unwrap_or(Path::new(".")))?;
+    // Of the file itself, whose errors do not mention the other name.
+    file.as_file().write_all(contents)?;
     // Some file systems tell of a full disk only when the data are on it.
     file.as_file().sync_all()?;
     file.persist(path)?;

@@ -44,7 +44,11 @@ impl Build {
         let time = GenerationTime::of_this_build()?;
         let written = package::build_with(&self.out, &start_values, &libraries, time)?;
         for library in &libraries {
-            say(format_args!("{} for {}, source as of {time}", library.path().display(), library.platform()))?;
+            say(format_args!(
+                "{} for {}, source as of {time}",
+                library.path().display(),
+                library.platform()
+            ))?;
         }
         Ok(written.iter().try_for_each(report)?)
     }

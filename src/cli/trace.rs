@@ -20,7 +20,7 @@ pub struct Trace {
     #[arg(long, value_name = "N", default_value_t = 1000)]
     steps: u32,
     /// Communication step in s; the controller's sample time if not given
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", value_parser = seconds)]
     step_size: Option<f64>,
     /// Parameter or input of the plant, with an enumeration's item by name; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
@@ -35,6 +35,13 @@ fn system(name: &str) -> Result<&'static System, String> {
         let known: Vec<&str> = SYSTEMS.iter().map(|system| system.name).collect();
         format!("no such system, expected one of: {}", known.join(", "))
     })
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(value) if f64::is_finite(value) && value > 0.0 => Ok(value),
+        _ => Err("expected a finite number greater than 0 of s".to_owned()),
+    }
 }
 
 impl Trace {

@@ -76,7 +76,8 @@ impl Archive {
             });
         }
         let bytes = file::read_at_most(&path, limit).map_err(|error| unreadable(error.to_string()))?;
-        let text = String::from_utf8(bytes).map_err(|error| unreadable(format!("it is not UTF-8: {error}")))?;
+        let text =
+            String::from_utf8(bytes).map_err(|error| unreadable(format!("it is not UTF-8: {error}")))?;
         ModelDescription::parse_within(&text, &self.limits)
     }
 
@@ -142,7 +143,11 @@ impl Unpacking<'_> {
     ) -> Result<io::Result<()>> {
         let left = self.limits.total_bytes - self.written;
         let mode = entry.unix_mode();
-        let written = match write_file(&mut entry.take(self.limits.entry_bytes.min(left).saturating_add(1)), target, mode) {
+        let written = match write_file(
+            &mut entry.take(self.limits.entry_bytes.min(left).saturating_add(1)),
+            target,
+            mode,
+        ) {
             Ok(written) => written,
             Err(error) => return Ok(Err(error)),
         };
@@ -211,5 +216,28 @@ mod tests {
         for escaping in ["../x", "a/../../x", "/etc/passwd", "..\\x", "a\0b"] {
             assert_eq!(path_inside(escaping), None, "{escaping:?}");
         }
+    }
+
+    /// Guards: a part of a refused archive that stays on the disk.
+    #[test]
+    fn nothing_is_left_of_a_refused_archive() {
+        use std::io::Write;
+        use zip::write::{SimpleFileOptions, ZipWriter};
+
+        let directory = tempfile::tempdir().unwrap();
+        let (path, parent) = (directory.path().join("unit.fmu"), directory.path().join("temporary"));
+        fs::create_dir(&parent).unwrap();
+        let mut zip = ZipWriter::new(File::create(&path).unwrap());
+        for name in ["resources/small", "resources/large"] {
+            zip.start_file(name, SimpleFileOptions::default()).unwrap();
+            zip.write_all(&[0; 100]).unwrap();
+        }
+        zip.finish().unwrap();
+        let unpacked = Archive::unpack_below(&parent, &path, &Limits::default()).unwrap();
+        assert_eq!(fs::read_dir(&parent).unwrap().count(), 1);
+        drop(unpacked);
+        let limits = Limits { total_bytes: 150, ..Limits::default() };
+        assert!(matches!(Archive::unpack_below(&parent, &path, &limits), Err(HostError::OverLimit { .. })));
+        assert_eq!(fs::read_dir(&parent).unwrap().count(), 0);
     }
 }

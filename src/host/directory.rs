@@ -81,7 +81,9 @@ pub(super) fn open(path: &Path, limits: &Limits) -> Result<Zip> {
         return Err(HostError::Entry { path: path.to_owned(), entry, reason: "is there twice" });
     }
     if zip.has_overlapping_entries().map_err(|error| cannot_open(with_causes(&error)))? {
-        return Err(cannot_open("entries overlap: they share bytes, as only a forged archive has them".to_owned()));
+        return Err(cannot_open(
+            "entries overlap: they share bytes, as only a forged archive has them".to_owned(),
+        ));
     }
     Ok(zip)
 }

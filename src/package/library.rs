@@ -38,7 +38,11 @@ impl Library {
         let missing = missing_functions(&library);
         if let Some(first) = missing.first() {
             let first = (*first).to_owned();
-            return Err(PackageError::MissingFunctions { path: path.to_owned(), first, count: missing.len() });
+            return Err(PackageError::MissingFunctions {
+                path: path.to_owned(),
+                first,
+                count: missing.len(),
+            });
         }
         let is_known = |name: &str| bytes.windows(name.len()).any(|part| part == name.as_bytes());
         if let Some(unit) = UNITS.iter().map(|unit| unit.description.name).find(|name| !is_known(name)) {

@@ -29,7 +29,7 @@ pub struct StartValues {
 /// Why a variable cannot start with a value.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum StartValueError {
-    #[error("{unit} has no variable {name}")]
+    #[error("{unit} has no variable {}", name.escape_debug())]
     UnknownVariable { unit: &'static str, name: String },
     #[error("{name} is calculated by {unit}: expected a parameter or an input")]
     Calculated { unit: &'static str, name: &'static str },

@@ -10,9 +10,7 @@ use object::pe;
 use object::write::elf::{FileHeader, Sym, Writer as ElfWriter};
 use object::write::pe::{NtHeaders, Writer as PeWriter};
 use object::write::{Object, StandardSection, Symbol, SymbolSection};
-use object::{
-    Architecture, BinaryFormat, Endianness, SymbolFlags, SymbolKind, SymbolScope, elf, macho,
-};
+use object::{Architecture, BinaryFormat, Endianness, SymbolFlags, SymbolKind, SymbolScope, elf, macho};
 
 /// Every function of both standards.
 pub fn all_functions() -> Vec<&'static str> {
@@ -49,11 +47,14 @@ fn elf(architecture: Architecture, functions: &[&str]) -> Vec<u8> {
     let mut writer = ElfWriter::new(Endianness::Little, true, &mut bytes);
     writer.reserve_file_header();
     writer.reserve_null_section_index();
-    let sections = [writer.reserve_shstrtab_section_index(), writer.reserve_dynstr_section_index()];
+    let section = writer.reserve_shstrtab_section_index();
+    writer.reserve_dynstr_section_index();
     writer.reserve_dynsym_section_index();
     let names: Vec<_> = functions.iter().map(|name| writer.add_dynamic_string(name.as_bytes())).collect();
     writer.reserve_null_dynamic_symbol_index();
-    names.iter().for_each(|_| drop(writer.reserve_dynamic_symbol_index()));
+    for _ in &names {
+        writer.reserve_dynamic_symbol_index();
+    }
     writer.reserve_dynsym();
     writer.reserve_dynstr().unwrap();
     writer.reserve_shstrtab().unwrap();
@@ -70,15 +71,16 @@ fn elf(architecture: Architecture, functions: &[&str]) -> Vec<u8> {
     writer.write_file_header(&header).unwrap();
     writer.write_null_dynamic_symbol();
     for name in names {
-        writer.write_dynamic_symbol(&Sym {
-            name: Some(name),
-            section: Some(sections[0]),
-            st_info: (elf::STB_GLOBAL.0 << 4) | elf::STT_FUNC.0,
-            st_other: 0,
+        let symbol = Sym {
+            st_name: writer.dynamic_string_offset(Some(name)),
+            section: Some(section.0),
+            st_info: elf::SymbolInfo::new(elf::STB_GLOBAL, elf::STT_FUNC),
+            st_other: Default::default(),
             st_shndx: Default::default(),
             st_value: 0,
             st_size: 0,
-        });
+        };
+        writer.write_dynamic_symbol(&symbol);
     }
     writer.write_dynstr();
     writer.write_shstrtab();

@@ -86,7 +86,9 @@ impl Experiment {
             let value = optional_real(ELEMENT, attribute, text.as_deref())?;
             let is_refused = |number: f64| !(number.is_finite() && fits(number));
             match (value, text) {
-                (Some(number), Some(text)) if is_refused(number) => Err(wrong(ELEMENT, attribute, text, expected)),
+                (Some(number), Some(text)) if is_refused(number) => {
+                    Err(wrong(ELEMENT, attribute, text, expected))
+                }
                 _ => Ok(value),
             }
         };
@@ -96,8 +98,12 @@ impl Experiment {
         Ok(DefaultExperiment {
             start_time,
             stop_time: real("stopTime", &self.stop_time, not_before, &|time| time >= start)?,
-            tolerance: real("tolerance", &self.tolerance, "a finite number, 0 or greater", &|value| value >= 0.0)?,
-            step_size: real("stepSize", &self.step_size, "a finite number greater than 0", &|step| step > 0.0)?,
+            tolerance: real("tolerance", &self.tolerance, "a finite number, 0 or greater", &|value| {
+                value >= 0.0
+            })?,
+            step_size: real("stepSize", &self.step_size, "a finite number greater than 0", &|step| {
+                step > 0.0
+            })?,
         })
     }
 }

@@ -1,7 +1,12 @@
-//! The number of elements in an XML document, counted before anything is built from them.
+//! Elements of an XML document are counted before anything is built from them, and only those that are known are kept.
+
+use std::fmt;
+use std::marker::PhantomData;
 
 use quick_xml::Reader;
 use quick_xml::events::Event;
+use serde::Deserialize;
+use serde::de::{Deserializer, SeqAccess, Visitor};
 
 use crate::causes::with_causes;
 use crate::host::error::{HostError, Result};
@@ -30,4 +35,38 @@ pub(super) fn check_number(xml: &str, limits: &Limits) -> Result<()> {
             });
         }
     }
+}
+
+/// An element that may be one of a later edition.
+pub(super) trait Known {
+    fn is_known(&self) -> bool;
+}
+
+/// For `#[serde(deserialize_with)]`: the known elements of a list. Others take no memory, however many there are.
+pub(super) fn known<'de, T, D>(deserializer: D) -> std::result::Result<Vec<T>, D::Error>
+where
+    T: Deserialize<'de> + Known,
+    D: Deserializer<'de>,
+{
+    struct KnownElements<T>(PhantomData<T>);
+
+    impl<'de, T: Deserialize<'de> + Known> Visitor<'de> for KnownElements<T> {
+        type Value = Vec<T>;
+
+        fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+            formatter.write_str("a list of elements")
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, mut elements: A) -> std::result::Result<Vec<T>, A::Error> {
+            let mut all = Vec::new();
+            while let Some(element) = elements.next_element::<T>()? {
+                if element.is_known() {
+                    all.push(element);
+                }
+            }
+            Ok(all)
+        }
+    }
+
+    deserializer.deserialize_seq(KnownElements(PhantomData))
 }

@@ -9,6 +9,7 @@ use serde::de::IgnoredAny;
 use crate::host::error::{HostError, Result};
 
 use super::attributes::{self, Experiment, Item};
+use super::elements::{Known, known};
 use super::{CoSimulation, FmiVersion, Kind, ModelDescription, Storage, Variability, Variable};
 
 #[derive(Deserialize)]
@@ -47,7 +48,7 @@ struct Interface {
 
 #[derive(Deserialize)]
 struct Types {
-    #[serde(rename = "$value", default)]
+    #[serde(rename = "$value", default, deserialize_with = "known")]
     all: Vec<TypeElement>,
 }
 
@@ -80,7 +81,7 @@ struct EnumerationType {
 
 #[derive(Deserialize)]
 struct Variables {
-    #[serde(rename = "$value", default)]
+    #[serde(rename = "$value", default, deserialize_with = "known")]
     all: Vec<VariableElement>,
 }
 
@@ -104,6 +105,18 @@ enum VariableElement {
     /// Whatever a later edition adds.
     #[serde(other)]
     Unknown,
+}
+
+impl Known for TypeElement {
+    fn is_known(&self) -> bool {
+        !matches!(self, Self::Other)
+    }
+}
+
+impl Known for VariableElement {
+    fn is_known(&self) -> bool {
+        !matches!(self, Self::Unknown)
+    }
 }
 
 #[derive(Deserialize)]
