@@ -238,7 +238,7 @@ fn root_mean_square(values: impl Iterator<Item = f64> + Clone) -> f64 {
         return plain;
     }
     let largest = values.clone().map(f64::abs).fold(0.0, f64::max);
-    largest * root(largest)
+    if largest.is_finite() { largest * root(largest) } else { largest }
 }
 
 #[cfg(test)]
