@@ -1,35 +1,30 @@
 //! Archives: layout, what the standards ask of the ZIP format, and the same bytes from the same inputs.
 #![cfg(feature = "tools")]
 
+mod library_file;
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::{Cursor, Read};
 use std::path::{Path, PathBuf};
+
+use library_file::write_library;
 
 use maglev_fmu::package::{
     FmiVersion, Form, GenerationTime, Library, PackageError, build, icon_png, model_description,
 };
 use maglev_fmu::unit::system::SYSTEMS;
 use maglev_fmu::unit::{StartValues, UNITS, UnitType};
+use object::Architecture;
 use zip::ZipArchive;
 
 const TIME: u32 = 1_234_567_891;
 
-/// A file that passes for a library: the head of a 64-bit ELF file and something to compress.
-fn library_file(directory: &Path, machine: u16) -> PathBuf {
-    let mut bytes = b"\x7fELF\x02\x01".to_vec();
-    bytes.resize(18, 0);
-    bytes.extend(machine.to_le_bytes());
-    bytes.extend((0..100_000u32).flat_map(|number| number.wrapping_mul(number).to_le_bytes()));
-    let path = directory.join(format!("library-{machine}.so"));
-    fs::write(&path, bytes).unwrap();
-    path
-}
-
 /// Builds all packages for Linux on both processors; file name below the directory to bytes.
 fn packages(time: u32) -> BTreeMap<PathBuf, Vec<u8>> {
     let directory = tempfile::tempdir().unwrap();
-    let paths = [62, 183].map(|machine| library_file(directory.path(), machine));
+    let paths = [Architecture::X86_64, Architecture::Aarch64]
+        .map(|architecture| write_library(directory.path(), architecture));
     let libraries = Library::read_all(&paths).unwrap();
     let out = directory.path().join("dist");
     let written = build(&out, &libraries, GenerationTime::from_epoch_seconds(time)).unwrap();
@@ -195,7 +190,7 @@ fn times_before_1980_do_not_fit_an_archive() {
 #[test]
 fn libraries_are_told_apart() {
     let directory = tempfile::tempdir().unwrap();
-    let library = library_file(directory.path(), 62);
+    let library = write_library(directory.path(), Architecture::X86_64);
     let twice = Library::read_all(&[library.clone(), library]).unwrap_err();
     assert!(matches!(twice, PackageError::SamePlatform { .. }) && twice.to_string().contains("x86_64-linux"));
     let text = directory.path().join("no-library.so");
@@ -209,7 +204,7 @@ fn libraries_are_told_apart() {
 #[test]
 fn a_failed_build_leaves_the_old_package() {
     let directory = tempfile::tempdir().unwrap();
-    let libraries = [Library::read(&library_file(directory.path(), 62)).unwrap()];
+    let libraries = [Library::read(&write_library(directory.path(), Architecture::X86_64)).unwrap()];
     let out = directory.path().join("dist");
     // A directory where the package belongs cannot be replaced by a file.
     let blocked = out.join("fmi3").join(UNITS[0].description.name).with_extension("fmu");

@@ -1,6 +1,7 @@
 //! Terminals of the units and system structure packages say what the table of systems says.
 #![cfg(feature = "tools")]
 
+mod library_file;
 #[allow(dead_code, reason = "each test uses a part")]
 mod package_xml;
 
@@ -13,6 +14,7 @@ use maglev_fmu::package::{FmiVersion, GenerationTime, Library, build};
 use maglev_fmu::unit::system::{SYSTEMS, System};
 use maglev_fmu::unit::variable::{Causality, Kind};
 use maglev_fmu::unit::{Description, UNITS};
+use object::Architecture;
 use package_xml::Element;
 use tempfile::TempDir;
 use zip::ZipArchive;
@@ -20,12 +22,8 @@ use zip::ZipArchive;
 /// All packages, with a file that passes for a library.
 fn packages() -> TempDir {
     let directory = tempfile::tempdir().unwrap();
-    let path = directory.path().join("library.so");
-    let mut bytes = b"\x7fELF\x02\x01".to_vec();
-    bytes.resize(18, 0);
-    bytes.extend([62, 0]);
-    fs::write(&path, bytes).unwrap();
-    let libraries = [Library::read(&path).unwrap()];
+    let libraries =
+        [Library::read(&library_file::write_library(directory.path(), Architecture::X86_64)).unwrap()];
     build(directory.path(), &libraries, GenerationTime::from_epoch_seconds(1_234_567_890)).unwrap();
     directory
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 use super::{FmiVersion, ThirdPartyError};
+use crate::fmi::function_names;
 use crate::unit::UnitError;
 
 /// Why packaging failed: the action and the path or value that it failed on.
@@ -41,8 +42,16 @@ pub enum PackageError {
         list(.looked_at)
     )]
     NoLibrary { looked_at: Vec<PathBuf> },
-    #[error("{} is no 64-bit ELF, PE or Mach-O library for x86_64 or aarch64", .path.display())]
+    #[error("{} is no 64-bit ELF, PE or Mach-O shared library for x86_64 or aarch64", .path.display())]
     UnknownPlatform { path: PathBuf },
+    #[error(
+        "{} is no library of these units: it lacks {first} and, with it, {count} of the {} functions of FMI 2.0 and FMI 3.0",
+        .path.display(),
+        FmiVersion::ALL.into_iter().map(|version| function_names(version).len()).sum::<usize>()
+    )]
+    MissingFunctions { path: PathBuf, first: String, count: usize },
+    #[error("{} is a library of other units: it does not know {unit}", .path.display())]
+    OtherUnits { path: PathBuf, unit: &'static str },
     #[error("{} and {} are both for {platform}: expected one library per platform", .first.display(), .second.display())]
     SamePlatform { first: PathBuf, second: PathBuf, platform: String },
     #[error("SOURCE_DATE_EPOCH = {value:?}: expected seconds since 1970, 0 to {}", u32::MAX)]

@@ -46,6 +46,7 @@ pub use reference_run::{ReferenceRun, Table};
 pub use related_files::{DIRECTORY as RELATED_FILES, INPUT as REFERENCE_INPUT, OUTPUT as REFERENCE_OUTPUT};
 pub use third_party::{PATH as THIRD_PARTY_PATH, ThirdPartyError, third_party};
 
+use crate::file;
 use crate::unit::system::SYSTEMS;
 use crate::unit::{Description, StartValues, UNITS};
 
@@ -110,18 +111,7 @@ pub fn build_with(
     Ok(written)
 }
 
-/// Writes a file under another name first, so that a failure leaves the old file or none.
+/// Writes a file whole or not at all.
 fn replace_file(path: &Path, contents: &[u8]) -> Result<(), PackageError> {
-    let failed = |source| PackageError::Write { path: path.to_owned(), source };
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // The process's umask takes away what it should.
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    let file = builder.tempfile_in(path.parent().unwrap_or(Path::new("."))).map_err(failed)?;
-    fs::write(file.path(), contents).map_err(failed)?;
-    file.persist(path).map_err(|error| failed(error.error))?;
-    Ok(())
+    file::replace(path, contents).map_err(|source| PackageError::Write { path: path.to_owned(), source })
 }

@@ -30,7 +30,7 @@ pub struct StartValues {
 /// Why a variable cannot start with a value.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum StartValueError {
-    #[error("{unit} has no variable {name}")]
+    #[error("{unit} has no variable {}", name.escape_debug())]
     UnknownVariable { unit: &'static str, name: String },
     #[error("{unit} has no variable with the value reference {reference}")]
     UnknownReference { unit: &'static str, reference: usize },
