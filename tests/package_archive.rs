@@ -7,7 +7,7 @@ use std::io::{Cursor, Read};
 use std::path::{Path, PathBuf};
 
 use maglev_fmu::package::{
-    FmiVersion, GenerationTime, Library, PackageError, build, icon_png, model_description,
+    Edition, FmiVersion, GenerationTime, Library, PackageError, build, icon_png, model_description,
 };
 use maglev_fmu::unit::system::SYSTEMS;
 use maglev_fmu::unit::{StartValues, UNITS, UnitType};
@@ -37,9 +37,11 @@ fn packages(time: u32) -> BTreeMap<PathBuf, Vec<u8>> {
         .iter()
         .map(|file| (file.path.strip_prefix(&out).unwrap().to_owned(), fs::read(&file.path).unwrap()))
         .collect();
-    assert_eq!(packages.len(), 2 * UNITS.len() + SYSTEMS.len());
+    assert_eq!(packages.len(), 2 * UNITS.len() + Edition::ALL.len() * SYSTEMS.len());
     // Nothing but the packages: no temporary file is left.
-    assert_eq!(fs::read_dir(&out).unwrap().count(), FmiVersion::ALL.len() + SYSTEMS.len());
+    let directories =
+        FmiVersion::ALL.len() + Edition::ALL.iter().filter(|edition| !edition.directory().is_empty()).count();
+    assert_eq!(fs::read_dir(&out).unwrap().count(), directories + SYSTEMS.len());
     for version in FmiVersion::ALL {
         assert_eq!(fs::read_dir(out.join(version.directory())).unwrap().count(), UNITS.len());
     }

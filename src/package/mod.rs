@@ -25,7 +25,6 @@ mod run_figure;
 mod system_structure;
 mod variable_text;
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -44,6 +43,8 @@ pub use platform::Platform;
 pub use reference_run::{ReferenceRun, Table};
 pub use related_files::{DIRECTORY as RELATED_FILES, INPUT as REFERENCE_INPUT, OUTPUT as REFERENCE_OUTPUT};
 
+pub use system_structure::Edition;
+
 use crate::unit::system::SYSTEMS;
 use crate::unit::{Description, StartValues, UNITS};
 
@@ -56,7 +57,8 @@ pub struct WrittenFile {
 }
 
 /// Writes `directory/fmi2/<Unit>.fmu` and `directory/fmi3/<Unit>.fmu` for all units, each with all `libraries`, and
-/// `directory/<system>.ssp` for all systems.
+/// for all systems a package of each [`Edition`]: `directory/<system>.ssp`, `directory/driven/<system>.ssp` and
+/// `directory/ssp2/<system>.ssp`.
 ///
 /// The same arguments give the same bytes. An archive appears complete or not at all.
 pub fn build(
@@ -76,8 +78,6 @@ pub fn build_with(
     time: GenerationTime,
 ) -> Result<Vec<WrittenFile>, PackageError> {
     let mut written = Vec::new();
-    // Packages by unit that go into the systems.
-    let mut for_systems = BTreeMap::new();
     for version in FmiVersion::ALL {
         let directory = directory.join(version.directory());
         fs::create_dir_all(&directory)
@@ -92,18 +92,20 @@ pub fn build_with(
                 .map_err(|source| PackageError::Archive { path: path.clone(), source })?;
             replace_file(&path, &bytes)?;
             written.push(WrittenFile { path, size: bytes.len() });
-            if version == system_structure::FMI_VERSION {
-                for_systems.insert(unit.description.name, (bytes, own));
-            }
         }
     }
-    for system in SYSTEMS {
-        let path = directory.join(system.name).with_extension("ssp");
-        let entries = system_structure::contents(system, time, &for_systems)?;
-        let bytes =
-            archive(&entries, time).map_err(|source| PackageError::Archive { path: path.clone(), source })?;
-        replace_file(&path, &bytes)?;
-        written.push(WrittenFile { path, size: bytes.len() });
+    for edition in Edition::ALL {
+        let directory = directory.join(edition.directory());
+        fs::create_dir_all(&directory)
+            .map_err(|source| PackageError::Write { path: directory.clone(), source })?;
+        for system in SYSTEMS {
+            let path = directory.join(system.name).with_extension("ssp");
+            let entries = system_structure::contents(system, edition, start_values, time, libraries)?;
+            let bytes = archive(&entries, time)
+                .map_err(|source| PackageError::Archive { path: path.clone(), source })?;
+            replace_file(&path, &bytes)?;
+            written.push(WrittenFile { path, size: bytes.len() });
+        }
     }
     Ok(written)
 }

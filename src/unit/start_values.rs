@@ -90,11 +90,28 @@ impl StartValues {
             return Err(StartValueError::NotWhole { name: variable.name, value, expected });
         }
         variable.check(value)?;
+        self.insert(reference, value);
+        Ok(())
+    }
+
+    /// These values, except where `others` have some.
+    pub fn overridden_by(mut self, others: &Self) -> Self {
+        for (reference, value) in &others.values {
+            self.insert(*reference, *value);
+        }
+        self
+    }
+
+    /// Whether all of `others` are among these values.
+    pub fn include(&self, others: &Self) -> bool {
+        others.values.iter().all(|value| self.values.contains(value))
+    }
+
+    fn insert(&mut self, reference: usize, value: f64) {
         match self.values.binary_search_by_key(&reference, |(known, _)| *known) {
             Ok(place) => self.values[place].1 = value,
             Err(place) => self.values.insert(place, (reference, value)),
         }
-        Ok(())
     }
 
     /// With what the variable with this value reference starts.
@@ -182,6 +199,19 @@ mod tests {
             assert_eq!(made.values()[reference].to_bits(), f64::to_bits(expected));
             assert_eq!(read.of(reference, variable), expected);
         }
+    }
+
+    #[test]
+    fn values_go_before_others() {
+        let [system, user] = [
+            values(&[("controller.k1", 1.0), ("controller.k2", 2.0)]).unwrap(),
+            values(&[("controller.k2", 3.0), ("sample_time", 0.5)]).unwrap(),
+        ];
+        let both = system.clone().overridden_by(&user);
+        let expected =
+            values(&[("controller.k1", 1.0), ("controller.k2", 3.0), ("sample_time", 0.5)]).unwrap();
+        assert_eq!(both, expected);
+        assert!(both.include(&user) && !both.include(&system) && both.include(StartValues::TABLE));
     }
 
     #[test]
