@@ -180,18 +180,19 @@ connectors of the system: the inputs that the loop leaves open, and its outputs;
 connectors of the system and the units for FMI 3.0.
 
 A program that runs a package is asked two things. *exact*, and *to 1e-09* as above, compare its bits with a plain loop
-of the same FMUs in the program's own order of exchange: both units step, then values are passed on, and the first step
-sees the start values, in FMPy zeros. Beside the bits the physics have to be right: after two seconds the bearing is where
-the loop of the paper has it, in which the controller reads and acts within the same sample, to 2 %; the ball is up, the
-rig's ball at its operating point; and from the observers' start-up on the estimates are within 1 % of the true values.
+of the same FMUs in the program's own order of exchange, over 500 steps: both units step, then values are passed on, and
+the first step sees the start values, in FMPy zeros. Beside the bits the physics have to be right: after two seconds the
+bearing is where the loop of the paper has it, in which the controller reads and acts within the same sample, to 2 %; the
+ball is up, the rig's ball at its operating point; and from the observers' start-up on the estimates are within 1 % of
+the true values.
 """
 
 NOTES = """\
 - FMPy does not apply the parameter sets that a package binds unless it is handed them, and starts all wires at 0. The
   units in a package therefore have the start values of the loop inside, and a controller lets the first step pass.
 - The packages' parameter sets have no enumerations, since none of the programs takes them: {enumerations}.
-- The step of a package is in its default experiment, as libcosim and OMSimulator read it, and in those of its units. FMPy
-  and ecospy are told it. No loop bears FMPy's own choice of 10 ms, with which each value acts two steps late: the
+- The step of a package is in its default experiment, where libcosim reads it, on its system, where OMSimulator writes it
+  in packages of its own, and in the default experiments of its units. FMPy and ecospy are told it. No loop bears FMPy's own choice of 10 ms, with which each value acts two steps late: the
   observer of the bearing would see ten equal positions in a row and the coil of the ball forgets its current in 5 ms, so
   that even the true states fed back lose it; of the rig the printed PID is lost from 2 ms on. The controllers in the
   packages refuse steps beyond 1 ms and say so, instead of computing something else.

@@ -36,7 +36,7 @@ fn terminals_of_a_loop_fit_each_other() {
                 (name, Element::parse(&text(&package, "terminalsAndIcons/terminalsAndIcons.xml")))
             })
             .collect();
-        for System { name, plant, controller, sensing, actuation } in SYSTEMS {
+        for System { name, plant, controller, sensing, actuation, .. } in SYSTEMS {
             let [plant, controller] = [plant, controller].map(|unit| {
                 let all = terminals[unit.description.name].child("Terminals");
                 let mut found = all.children_named("Terminal");

@@ -70,7 +70,7 @@ impl Edition {
 
 /// Instance of a unit in a system.
 struct Component {
-    /// The unit's: no variable begins with it, and a variable's name that does misleads importers that cut at dots.
+    /// The unit's. Importers that cut names at dots would take `controller.kp` for a variable of `controller`.
     name: &'static str,
     unit: &'static UnitType,
     /// Wires that end here: output of the other unit and own input.
@@ -134,7 +134,7 @@ pub fn contents(
     Ok(entries)
 }
 
-/// The unit as it goes into a system: one without clocks, which importers of systems do not know.
+/// The package of a unit as it goes into a system.
 fn unit_package(
     description: &'static Description,
     start_values: &StartValues,

@@ -32,7 +32,7 @@ pub fn page(system: &System, edition: Edition, time: GenerationTime) -> String {
 <p>Communication step: {:?} s, so in the default experiment; the controller refuses steps beyond its
 <code>longest_step</code>. The units start as a master needs it that steps both at once and then exchanges values: the
 observer hears the voltage that acted (<code>observer.voltage_source = applied</code>), and the controller lets the first
-step pass (<code>start_delay</code>), in which wires may carry zeros.{rig}</p>
+step pass (<code>start_delay</code>), in which wires may carry zeros.{remark}</p>
 <p>Parameters are in <code>resources/{controller_name}.ssv</code> and <code>resources/{plant_name}.ssv</code>, at the
 start values of the units in this package and ready to be changed. Choices (enumerations) are not among them, since not
 every importer takes these files with enumerations; set them in the tool.</p>
@@ -45,6 +45,6 @@ every importer takes these files with enumerations; set them in the tool.</p>
         system.step_size(),
         env!("CARGO_PKG_VERSION"),
         name = system.name,
-        rig = system.remark,
+        remark = system.remark,
     )
 }
