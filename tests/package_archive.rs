@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use library_file::write_library;
 
 use maglev_fmu::package::{
-    FmiVersion, Form, GenerationTime, Library, PackageError, build, icon_png, model_description,
+    FmiVersion, Form, GenerationTime, Library, PackageError, SystemForm, build, icon_png, model_description,
 };
 use maglev_fmu::unit::system::SYSTEMS;
 use maglev_fmu::unit::{StartValues, UNITS, UnitType};
@@ -33,9 +33,11 @@ fn packages(time: u32) -> BTreeMap<PathBuf, Vec<u8>> {
         .map(|file| (file.path.strip_prefix(&out).unwrap().to_owned(), fs::read(&file.path).unwrap()))
         .collect();
     let forms = |unit: &UnitType| Form::all_of(unit.description).count();
-    assert_eq!(packages.len(), UNITS.iter().map(|unit| forms(unit)).sum::<usize>() + SYSTEMS.len());
+    let units = UNITS.iter().map(|unit| forms(unit)).sum::<usize>();
+    assert_eq!(packages.len(), units + SystemForm::ALL.len() * SYSTEMS.len());
     // Nothing but the packages: no temporary file is left.
-    assert_eq!(fs::read_dir(&out).unwrap().count(), Form::ALL.len() + SYSTEMS.len());
+    let directories = SystemForm::ALL.iter().filter(|form| !form.directory().is_empty()).count();
+    assert_eq!(fs::read_dir(&out).unwrap().count(), Form::ALL.len() + directories + SYSTEMS.len());
     for form in Form::ALL {
         let suited = UNITS.iter().filter(|unit| form.edition.suits(unit.description)).count();
         assert_eq!(fs::read_dir(out.join(form.directory())).unwrap().count(), suited);

@@ -268,8 +268,11 @@ fn clocked_editions_have_two_clocks_and_may_be_scheduled_and_plain_ones_have_nei
             let reference = (description.variables.len() + index).to_string();
             assert_eq!(clock.attribute("valueReference"), Some(reference.as_str()));
             assert_eq!(clock.attribute("variability"), Some("discrete"));
-            // The interval is to be asked for: it follows from a parameter.
-            assert_eq!(clock.attribute("intervalDecimal"), None);
+            // "This attribute is required if Clock type is constant, fixed or tunable", section 2.4.5.1.
+            let interval =
+                clock.attribute("intervalDecimal").map(|interval| interval.parse::<f64>().unwrap());
+            let (_, sample_time) = description.find("sample_time").unwrap();
+            assert_eq!(interval, (index == 0).then_some(sample_time.start));
         }
         // Outputs can be read outside of ticks, `ticked` at ticks only.
         assert!(variables(root).iter().all(|variable| variable.head.attribute("clocks").is_none()));

@@ -91,7 +91,7 @@ fn parameter_sets_of_the_system_agree() {
     let file = std::fs::File::open(PACKAGES.join("bearing.ssp")).unwrap();
     let mut archive = zip::ZipArchive::new(file).unwrap();
     let mut text = String::new();
-    archive.by_name("resources/controller.ssv").unwrap().read_to_string(&mut text).unwrap();
+    archive.by_name("resources/MagneticBearingController.ssv").unwrap().read_to_string(&mut text).unwrap();
     let of = |name: &str| {
         let from = text.find(&format!("name=\"{name}\"")).unwrap();
         text[from..].split("value=\"").nth(1).unwrap().split('"').next().unwrap().parse::<f64>().unwrap()

@@ -7,6 +7,7 @@ use thiserror::Error;
 use super::{FmiVersion, ThirdPartyError};
 use crate::fmi::function_names;
 use crate::unit::UnitError;
+use crate::unit::start_values::StartValueError;
 
 /// Why packaging failed: the action and the path or value that it failed on.
 #[derive(Debug, Error)]
@@ -25,8 +26,8 @@ pub enum PackageError {
     Manifest { unit: &'static str, source: quick_xml::SeError },
     #[error("cannot write the system structure of {system}")]
     SystemStructure { system: &'static str, source: quick_xml::SeError },
-    #[error("system {system} needs {unit}, which is not in the list of units")]
-    UnknownUnit { system: &'static str, unit: &'static str },
+    #[error("a unit of the system {system} cannot start as the table of systems says")]
+    SystemStart { system: &'static str, source: StartValueError },
     #[error("cannot compute the reference output of {unit}")]
     ReferenceRun { unit: &'static str, source: UnitError },
     #[error("unit {unit} has no icon: draw assets/{unit}.svg and list it in src/package/icon.rs")]

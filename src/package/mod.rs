@@ -26,7 +26,6 @@ mod system_structure;
 mod third_party;
 mod variable_text;
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -46,6 +45,8 @@ pub use reference_run::{ReferenceRun, Table};
 pub use related_files::{DIRECTORY as RELATED_FILES, INPUT as REFERENCE_INPUT, OUTPUT as REFERENCE_OUTPUT};
 pub use third_party::{PATH as THIRD_PARTY_PATH, ThirdPartyError, third_party};
 
+pub use system_structure::SystemForm;
+
 use crate::file;
 use crate::unit::system::SYSTEMS;
 use crate::unit::{Description, StartValues, UNITS};
@@ -59,7 +60,8 @@ pub struct WrittenFile {
 }
 
 /// Writes `directory/<form>/<Unit>.fmu` for all units in all their forms ([`Form::directory`]), each with all
-/// `libraries`, and `directory/<system>.ssp` for all systems.
+/// `libraries`, and for all systems a package of each [`SystemForm`]: `directory/<system>.ssp`,
+/// `directory/driven/<system>.ssp` and `directory/ssp2/<system>.ssp`.
 ///
 /// The same arguments give the same bytes. An archive appears complete or not at all.
 pub fn build(
@@ -79,8 +81,6 @@ pub fn build_with(
     time: GenerationTime,
 ) -> Result<Vec<WrittenFile>, PackageError> {
     let mut written = Vec::new();
-    // Packages by unit that go into the systems.
-    let mut for_systems = BTreeMap::new();
     for form in Form::ALL {
         let directory = directory.join(form.directory());
         fs::create_dir_all(&directory)
@@ -95,18 +95,20 @@ pub fn build_with(
                 .map_err(|source| PackageError::Archive { path: path.clone(), source })?;
             replace_file(&path, &bytes)?;
             written.push(WrittenFile { path, size: bytes.len() });
-            if form == system_structure::FORM {
-                for_systems.insert(unit.description.name, (bytes, own));
-            }
         }
     }
-    for system in SYSTEMS {
-        let path = directory.join(system.name).with_extension("ssp");
-        let entries = system_structure::contents(system, time, &for_systems)?;
-        let bytes =
-            archive(&entries, time).map_err(|source| PackageError::Archive { path: path.clone(), source })?;
-        replace_file(&path, &bytes)?;
-        written.push(WrittenFile { path, size: bytes.len() });
+    for form in SystemForm::ALL {
+        let directory = directory.join(form.directory());
+        fs::create_dir_all(&directory)
+            .map_err(|source| PackageError::Write { path: directory.clone(), source })?;
+        for system in SYSTEMS {
+            let path = directory.join(system.name).with_extension("ssp");
+            let entries = system_structure::contents(system, form, start_values, time, libraries)?;
+            let bytes = archive(&entries, time)
+                .map_err(|source| PackageError::Archive { path: path.clone(), source })?;
+            replace_file(&path, &bytes)?;
+            written.push(WrittenFile { path, size: bytes.len() });
+        }
     }
     Ok(written)
 }

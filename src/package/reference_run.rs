@@ -137,6 +137,9 @@ impl Bench {
             None => (UNITS.iter().copied().filter(|unit| is_it(unit)).collect(), 0),
         };
         let mut units: Vec<Box<dyn Unit>> = types.iter().map(|unit| (unit.create)()).collect();
+        if let Some(system) = system {
+            apply_starts_of_partner(system, description, start_values, &types, &mut units);
+        }
         start_values.apply(&mut *units[place]);
         units.iter_mut().try_for_each(|unit| unit.initialise(0.0))?;
         let wires =
@@ -208,6 +211,23 @@ fn initial_inputs(description: &'static Description) -> Vec<usize> {
     inputs.map(|(reference, _)| reference).collect()
 }
 
+/// A unit that starts as in a package of its system meets the other one as it starts there.
+fn apply_starts_of_partner(
+    system: &System,
+    description: &'static Description,
+    start_values: &StartValues,
+    types: &[&UnitType],
+    units: &mut [Box<dyn Unit>],
+) {
+    let own = system.start_values(description);
+    if own.is_ok_and(|own| own != *StartValues::TABLE && start_values.include(&own)) {
+        for (unit, made) in types.iter().zip(units) {
+            // What cannot be packaged has been refused before.
+            system.start_values(unit.description).unwrap_or_default().apply(&mut **made);
+        }
+    }
+}
+
 /// Value reference of an end of a wire.
 fn reference(unit: &dyn Unit, name: &str) -> usize {
     unit.description().find(name).expect("wires end at variables of the table").0
@@ -264,6 +284,24 @@ mod tests {
                 let first = run.inputs.rows[0].1[column];
                 let moves = run.inputs.rows.iter().any(|(_, values)| values[column] != first);
                 assert!(moves, "{} of {}", variable.name, unit.description.name);
+            }
+        }
+    }
+
+    /// In a package of the rig both sensors are adjusted; a plant with another sensor would lose its ball.
+    #[test]
+    fn units_of_a_system_meet_each_other() {
+        let rig = System::find("rig").unwrap();
+        for unit in [rig.plant, rig.controller] {
+            let starts = rig.start_values(unit.description).unwrap();
+            let run = ReferenceRun::of(unit.description, &starts).unwrap();
+            for table in [&run.inputs, &run.outputs] {
+                let sensor =
+                    table.variables.iter().position(|variable| variable.name.starts_with("sensor_voltage"));
+                if let Some(column) = sensor {
+                    let worst = table.rows.iter().map(|(_, row)| row[column].abs()).fold(0.0, f64::max);
+                    assert!(worst < 0.5, "{}: {worst} V off the operating point", unit.description.name);
+                }
             }
         }
     }

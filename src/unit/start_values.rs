@@ -95,6 +95,23 @@ impl StartValues {
             return Err(StartValueError::NotWhole { name: variable.name, value, expected });
         }
         variable.check(value)?;
+        Ok(self.insert(reference, value)?)
+    }
+
+    /// These values, except where `others` have some.
+    pub fn overridden_by(mut self, others: &Self) -> Result<Self, OutOfMemory> {
+        for (reference, value) in &others.values {
+            self.insert(*reference, *value)?;
+        }
+        Ok(self)
+    }
+
+    /// Whether all of `others` are among these values.
+    pub fn include(&self, others: &Self) -> bool {
+        others.values.iter().all(|value| self.values.contains(value))
+    }
+
+    fn insert(&mut self, reference: usize, value: f64) -> Result<(), OutOfMemory> {
         match self.values.binary_search_by_key(&reference, |(known, _)| *known) {
             Ok(place) => self.values[place].1 = value,
             Err(place) => {
@@ -212,6 +229,19 @@ mod tests {
                 assert_eq!((found_edition, read), (edition, values), "{}", description.name);
             }
         }
+    }
+
+    #[test]
+    fn values_go_before_others() {
+        let [system, user] = [
+            values(&[("controller.k1", 1.0), ("controller.k2", 2.0)]).unwrap(),
+            values(&[("controller.k2", 3.0), ("sample_time", 0.5)]).unwrap(),
+        ];
+        let both = system.clone().overridden_by(&user).unwrap();
+        let expected =
+            values(&[("controller.k1", 1.0), ("controller.k2", 3.0), ("sample_time", 0.5)]).unwrap();
+        assert_eq!(both, expected);
+        assert!(both.include(&user) && !both.include(&system) && both.include(StartValues::TABLE));
     }
 
     #[test]

@@ -9,8 +9,10 @@ use parameters::{
 pub use table::DESCRIPTION;
 use table::*;
 
+use super::longest_step::check_step;
 use super::sample_clock::SampleClock;
 use super::sampled::SampledUnit;
+use super::start_delay::StartDelay;
 use super::{Description, Journal, Topic, Unit, UnitError, start_values};
 use crate::controller::digital_pid::DigitalPid;
 use crate::controller::saturate_between;
@@ -26,6 +28,7 @@ pub struct MaglevRigController {
     #[serde(with = "BigArray")]
     values: [f64; COUNT],
     clock: SampleClock,
+    start_delay: StartDelay,
     measurement: Measurement,
     observer: ExtendedStateObserver,
     reference_filter: ReferenceFilter,
@@ -43,6 +46,7 @@ impl MaglevRigController {
         let values = start_values(&VARIABLES);
         Self {
             clock: SampleClock::new(values[SAMPLE_TIME], 0.0),
+            start_delay: StartDelay::new(0.0, values[START_DELAY], values[SAMPLE_TIME]),
             measurement: Measurement::from_values(&values),
             observer: ExtendedStateObserver::new(observer_settings(&values), ExtendedState::default()),
             reference_filter: ReferenceFilter::new(values[REFERENCE_FILTER], values[SAMPLE_TIME]),
@@ -58,6 +62,9 @@ impl MaglevRigController {
     /// Reads the inputs, runs the observer, then the law, and sets the outputs.
     #[inline]
     fn tick_at(&mut self, time: f64, journal: &mut dyn Journal) {
+        if self.start_delay.covers(time) {
+            return;
+        }
         self.values[TICK_TIME] = time;
         if self.awaits_first_tick {
             self.begin(journal);
@@ -172,6 +179,7 @@ impl Unit for MaglevRigController {
         self.adopt_parameters();
         let values = &mut self.values;
         self.clock = SampleClock::new(values[SAMPLE_TIME], start_time);
+        self.start_delay = StartDelay::new(start_time, values[START_DELAY], values[SAMPLE_TIME]);
         self.pid = DigitalPid::default();
         self.reference = Reference::at_rest(values[REFERENCE]);
         self.awaits_first_tick = true;
@@ -187,6 +195,7 @@ impl Unit for MaglevRigController {
     }
 
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError> {
+        check_step(duration, self.values[LONGEST_STEP])?;
         let (clock, ticks) = self.affordable_ticks(duration)?;
         self.clock = clock;
         for k in ticks {

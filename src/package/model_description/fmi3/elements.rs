@@ -188,6 +188,9 @@ pub struct ClockAttributes {
     pub priority: Option<u32>,
     #[serde(rename = "@intervalVariability")]
     pub interval_variability: &'static str,
+    /// \[s\]
+    #[serde(rename = "@intervalDecimal", skip_serializing_if = "Option::is_none")]
+    pub interval_decimal: Option<String>,
     #[serde(rename = "@supportsFraction", skip_serializing_if = "Option::is_none")]
     pub supports_fraction: Option<bool>,
 }

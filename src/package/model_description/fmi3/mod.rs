@@ -14,7 +14,7 @@ use super::common::{
 };
 use super::roles;
 use crate::package::{Capabilities, FmiVersion, GenerationTime, licenses};
-use crate::unit::sampled::ClockVariable;
+use crate::unit::sampled::{ClockVariable, SAMPLE_TIME};
 use crate::unit::variable::{Kind, Variable};
 use crate::unit::{Description, Edition, StartValues};
 
@@ -54,10 +54,9 @@ impl ModelDescription {
                     .map(|(reference, variable)| {
                         TypedVariable::new(description, reference, variable, start_values)
                     })
-                    .chain(
-                        clocks
-                            .map(|(reference, clock)| TypedVariable::clock(reference, clock, &input_clocks)),
-                    )
+                    .chain(clocks.map(|(reference, clock)| {
+                        TypedVariable::clock(description, reference, clock, &input_clocks, start_values)
+                    }))
                     .collect(),
             },
             model_structure: ModelStructure::new(description, edition),
@@ -139,9 +138,17 @@ impl TypeDefinitions {
 impl TypedVariable {
     /// An output clock ticks when one of the `input_clocks` does: it is bound to them, and may be asked for at their
     /// ticks only.
-    fn clock(value_reference: usize, clock: &ClockVariable, input_clocks: &str) -> Self {
-        // The interval follows from a fixed parameter, so the clock is a fixed one without intervalDecimal; section
-        // 2.4.5.1 asks for that attribute, but by section 2.2.9.1 an importer would then have to set the interval.
+    ///
+    /// The interval of an input clock is what the parameter sample_time starts with. An importer may set either, with the
+    /// same effect (section 2.4.5.1 asks for the attribute, section 2.2.9.2 has the importer set the interval then).
+    fn clock(
+        description: &Description,
+        value_reference: usize,
+        clock: &ClockVariable,
+        input_clocks: &str,
+        start_values: &StartValues,
+    ) -> Self {
+        let sample_time = description.find(SAMPLE_TIME).filter(|_| clock.is_input);
         Self::Clock(ClockAttributes {
             name: clock.name,
             value_reference,
@@ -151,6 +158,9 @@ impl TypedVariable {
             clocks: (!clock.is_input).then(|| input_clocks.to_owned()),
             priority: clock.is_input.then_some(0),
             interval_variability: if clock.is_input { "fixed" } else { "triggered" },
+            interval_decimal: sample_time.and_then(|(reference, variable)| {
+                roles::start(variable, start_values.of(reference, variable))
+            }),
             supports_fraction: clock.is_input.then_some(true),
         })
     }
