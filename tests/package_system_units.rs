@@ -2,6 +2,7 @@
 #![cfg(feature = "tools")]
 
 mod built_packages;
+mod library_file;
 #[allow(dead_code, reason = "each test uses a part")]
 mod package_xml;
 
@@ -13,7 +14,7 @@ use built_packages::{bytes, packages, packages_with, path, ssp_version, text};
 use maglev_fmu::package::SystemForm;
 use maglev_fmu::unit::system::{BEARING, SYSTEMS};
 use maglev_fmu::unit::variable::{Causality, Kind};
-use maglev_fmu::unit::{Description, StartValues};
+use maglev_fmu::unit::{Description, Edition, StartValues};
 use package_xml::Element;
 use zip::ZipArchive;
 
@@ -43,7 +44,7 @@ fn systems_hold_units_that_start_as_the_loop_needs() {
                 let inside = description_inside(&package, unit.description);
                 let version = if form == SystemForm::Two { "3.0" } else { "2.0" };
                 assert_eq!(inside.attribute("fmiVersion"), Some(version));
-                assert_eq!(token(&inside), starts.token(unit.description));
+                assert_eq!(token(&inside), starts.token(unit.description, Edition::Plain));
                 let mut components = structure.child("ssd:System").child("ssd:Elements").children.iter();
                 let name = Some(unit.description.name);
                 let component = components.find(|element| element.attribute("name") == name).unwrap();
@@ -64,10 +65,13 @@ fn start_values_of_the_user_go_before_those_of_the_system() {
     wanted.set(unit, "observer.voltage_source", 1.0).unwrap();
     wanted.set(unit, "controller.k1", 2.0).unwrap();
     let directory = packages_with(&[(unit, wanted.clone())]);
-    let expected = BEARING.start_values(unit).unwrap().overridden_by(&wanted);
-    assert!(expected.token(unit).contains("=2.0"));
+    let expected = BEARING.start_values(unit).unwrap().overridden_by(&wanted).unwrap();
+    assert!(expected.token(unit, Edition::Plain).contains("=2.0"));
     for form in SystemForm::ALL {
-        assert_eq!(token(&description_inside(&path(&directory, form, &BEARING), unit)), expected.token(unit));
+        assert_eq!(
+            token(&description_inside(&path(&directory, form, &BEARING), unit)),
+            expected.token(unit, Edition::Plain)
+        );
     }
 }
 

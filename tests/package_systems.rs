@@ -2,6 +2,7 @@
 #![cfg(feature = "tools")]
 
 mod built_packages;
+mod library_file;
 #[allow(dead_code, reason = "each test uses a part")]
 mod package_xml;
 
@@ -58,7 +59,7 @@ fn terminals_of_a_loop_fit_each_other() {
     }
 }
 
-/// Whether packages of an form have connectors of the system itself.
+/// Whether packages of a form have connectors of the system itself.
 fn is_driven(form: SystemForm) -> bool {
     form != SystemForm::Closed
 }

@@ -1,12 +1,14 @@
 //! All packages, built around a file that passes for a library, and what is in them.
 
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use super::library_file::write_library;
 use maglev_fmu::package::{GenerationTime, Library, SystemForm, build_with};
 use maglev_fmu::unit::system::System;
 use maglev_fmu::unit::{Description, StartValues};
+use object::Architecture;
 use tempfile::TempDir;
 use zip::ZipArchive;
 
@@ -18,12 +20,8 @@ pub fn packages() -> TempDir {
 /// All packages, of some units with other start values.
 pub fn packages_with(start_values: &[(&'static Description, StartValues)]) -> TempDir {
     let directory = tempfile::tempdir().unwrap();
-    let path = directory.path().join("library.so");
-    let mut bytes = b"\x7fELF\x02\x01".to_vec();
-    bytes.resize(18, 0);
-    bytes.extend([62, 0]);
-    fs::write(&path, bytes).unwrap();
-    let libraries = [Library::read(&path).unwrap()];
+    let library = write_library(directory.path(), Architecture::X86_64);
+    let libraries = [Library::read(&library).unwrap()];
     let time = GenerationTime::from_epoch_seconds(1_234_567_890);
     build_with(directory.path(), start_values, &libraries, time).unwrap();
     directory
@@ -45,7 +43,7 @@ pub fn text(package: &Path, member: &str) -> String {
     String::from_utf8(bytes(package, member)).unwrap()
 }
 
-/// The attribute `version` of the files of an form.
+/// The attribute `version` of the files of a form.
 pub fn ssp_version(form: SystemForm) -> &'static str {
     if form == SystemForm::Two { "2.0" } else { "1.0" }
 }
