@@ -1,5 +1,6 @@
 //! Reading and writing variables by value reference.
 
+use super::floating_point::in_default_environment;
 use super::{CallError, Instance, Phase};
 use crate::unit::variable::{Causality, Kind, Variability, Variable};
 
@@ -11,6 +12,8 @@ pub(super) struct DataType {
     pub has_clocks: bool,
 }
 
+/// Where both sides hold `f64`, reading and writing copies and compares bits, and computes nothing by itself: see
+/// [`super::boundary::enter_to_copy`].
 impl Instance {
     /// Copies the values of variables of one data type to `values`.
     #[inline]
@@ -60,7 +63,7 @@ impl Instance {
         }
         self.needs_evaluation = true;
         if parameters_changed {
-            self.unit.adopt_parameters();
+            in_default_environment(|| self.unit.adopt_parameters());
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use super::{CallError, CommunicationPoint, Instance, Interface, Phase};
 use crate::unit::continuous::nominal;
-use crate::unit::value::ValueError;
+use crate::unit::value::{ValueError, is_finite};
 use crate::unit::{ContinuousUnit, TIME};
 
 impl Instance {
@@ -121,7 +121,7 @@ impl Instance {
     #[inline]
     pub(super) fn require_computed(&self, row: usize) -> Result<(), CallError> {
         let value = self.unit.values()[row];
-        if value.is_finite() {
+        if is_finite(value) {
             return Ok(());
         }
         let variable = &self.variables[row];
