@@ -1,5 +1,6 @@
 //! Reading and writing variables by value reference.
 
+use super::floating_point::in_default_environment;
 use super::{CallError, FmiVersion, Instance, Phase};
 use crate::unit::LARGEST_TABLE;
 use crate::unit::variable::{Causality, Kind, Variability, Variable};
@@ -11,6 +12,8 @@ pub(super) struct DataType {
     pub standard: FmiVersion,
 }
 
+/// Where both sides hold `f64`, reading and writing copies and compares bits, and computes nothing by itself: see
+/// [`super::boundary::enter_to_copy`].
 impl Instance {
     /// Copies the values of variables of one data type to `values`.
     #[inline]
@@ -76,11 +79,12 @@ impl Instance {
         for (reference, value) in assignments {
             values[reference as usize] = value;
         }
-        if let Err(error) = self.unit.check_parameters() {
-            self.unit.values_mut().copy_from_slice(before);
+        let unit = &mut self.unit;
+        let fit = in_default_environment(|| unit.check_parameters().map(|()| unit.adopt_parameters()));
+        if let Err(error) = fit {
+            unit.values_mut().copy_from_slice(before);
             return Err(error.into());
         }
-        self.unit.adopt_parameters();
         self.needs_evaluation = true;
         Ok(())
     }

@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use super::floating_point::in_default_environment;
 use super::fmi3::types::{fmi3ClockUpdateCallback, fmi3InstanceEnvironment};
 use super::intermediate_update::{IntermediateUpdate, StepInProgress};
 use super::model_exchange::EarliestTime;
@@ -113,7 +114,7 @@ impl Instance {
     /// Computes all calculated values if something changed since the last time.
     pub(super) fn refresh(&mut self) -> Result<(), CallError> {
         if self.is_stale {
-            self.unit.initialise(self.start_time)?;
+            in_default_environment(|| self.unit.initialise(self.start_time))?;
             self.is_stale = false;
         }
         Ok(())
@@ -124,7 +125,7 @@ impl Instance {
     pub(super) fn evaluate(&mut self) {
         if self.needs_evaluation {
             if let Some(unit) = self.unit.continuous() {
-                unit.evaluate();
+                in_default_environment(|| unit.evaluate());
             }
             self.needs_evaluation = false;
         }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::event_mode::EventEnd;
 use super::{CallError, Instance, Interface, Phase};
 use crate::unit::continuous::nominal;
-use crate::unit::value::ValueError;
+use crate::unit::value::{ValueError, is_finite};
 use crate::unit::{ContinuousUnit, TIME};
 
 /// How far time may go back: not beyond the last event, nor beyond the completed step before the last one (FMI 2.0.5,
@@ -163,7 +163,7 @@ impl Instance {
     #[inline]
     pub(super) fn require_computed(&self, row: usize) -> Result<(), CallError> {
         let value = self.unit.values()[row];
-        if value.is_finite() {
+        if is_finite(value) {
             return Ok(());
         }
         let variable = &self.variables[row];

@@ -1,7 +1,7 @@
 //! Memory that runs out, at every place where some is asked for: an error with a message, nothing leaked, and the
 //! instance goes on.
 
-mod allocator;
+pub mod allocator;
 
 use core::cell::{Cell, RefCell};
 use core::ffi::{CStr, c_char, c_void};
@@ -9,8 +9,7 @@ use core::mem::transmute;
 use core::ptr::{null, null_mut};
 use std::ffi::CString;
 
-pub use allocator::blocks;
-use allocator::with_memory_for;
+use allocator::{blocks, with_memory_for};
 use maglev_fmu::fmi::fmi2::types::{
     FMI2_CO_SIMULATION, FMI2_MODEL_EXCHANGE, fmi2CallbackFunctions, fmi2CallbackLogger,
 };

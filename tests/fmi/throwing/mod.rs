@@ -11,7 +11,7 @@ use importer::{Importer, Language};
 use maglev_fmu::fmi::fmi3::{fmi3InstantiateCoSimulation, fmi3InstantiateScheduledExecution};
 use maglev_fmu::unit::Edition;
 
-use super::failing_memory::blocks;
+use super::failing_memory::allocator::blocks;
 use super::harness::{self, BOTH, CONTROLLER, Component, ERROR, OK, Standard, description, instantiate_with};
 
 /// Runs `check` with an importer in every language for which there is a compiler.
@@ -23,7 +23,7 @@ fn in_each_language(test: &str, check: impl Fn(&Importer)) {
 /// Result of `call` if no callback left it, in a host that traps: its control word stays its own in any case.
 #[cfg(target_arch = "x86_64")]
 fn protect(importer: &Importer, call: impl FnMut() -> i32) -> Option<i32> {
-    use super::floating_point::{TRAPPING, hosted};
+    use super::floating_point::host::{TRAPPING, hosted};
     hosted(TRAPPING, || importer.protect(call))
 }
 
