@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping, Sequence
+from ctypes import ArgumentError
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -14,6 +15,9 @@ from fmpy.model_description import ModelVariable
 from fmpy.simulation import instantiate_fmu
 
 Value = float | int | bool | str
+
+# As for maglev-fmu; what a user names may be a device without end [byte].
+LONGEST_PARAMETER_FILE = 1 << 20
 
 # fmpy passes the messages of all FMI 2.0 instances to the callback that was registered last, even after the instance
 # it belongs to is gone, so callbacks must never be collected.
@@ -34,19 +38,24 @@ class Fmu:
 
     def __init__(self, path: Path, log: Callable[[str], None] | None = None) -> None:
         """Load and instantiate the FMU at `path`; its messages go to `log`, or to standard output."""
-        self.description = read_model_description(path)
+        try:
+            self.description = read_model_description(path)
+        except OSError:
+            raise
+        except Exception as error:
+            raise ValueError(f"cannot read {path}: {error}") from None
         self.fmi_version = int(self.description.fmiVersion[0])
         self.variables = {variable.name: variable for variable in self.description.modelVariables}
         self._references = {name: variable.valueReference for name, variable in self.variables.items()}
         self._folder = TemporaryDirectory(prefix="fmu-")
-        extract(path, unzipdir=self._folder.name)
         try:
+            extract(path, unzipdir=self._folder.name)
             self.slave: FMU2Slave | FMU3Slave = instantiate_fmu(
                 self._folder.name, self.description, "CoSimulation", logger=_logger(log)
             )
-        except Exception:
+        except Exception as error:
             self._folder.cleanup()
-            raise
+            raise ValueError(f"cannot load {path}: {error}") from error
         _callbacks.append(self.slave.callbacks if self.fmi_version == 2 else self.slave.logMessage)
         reals = "Real" if self.fmi_version == 2 else "Float64"
         self._get_reals = getattr(self.slave, f"get{reals}")
@@ -94,7 +103,10 @@ class Fmu:
             variable = self._variable(name)
             is_item = variable.type == "Enumeration" and isinstance(value, str)
             number = item_number(variable, value) if is_item else value
-            self._accessor("set", variable)([variable.valueReference], [number])
+            try:
+                self._accessor("set", variable)([variable.valueReference], [number])
+            except (TypeError, OverflowError, ArgumentError):
+                raise ValueError(f"{name} = {value!r}: expected a value of type {variable.type}") from None
 
     def get_reals(self, names: Sequence[str]) -> list[float]:
         """Values of several real variables in one call."""
@@ -129,14 +141,33 @@ class Fmu:
 def parameter_values(path: Path, unit: str) -> dict[str, Value]:
     """Start values for `unit` from a parameter file, such as `maglev-fmu tune` writes; items of enumerations by number."""
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+        with path.open("rb") as file:
+            text = file.read(LONGEST_PARAMETER_FILE + 1)
+        if len(text) > LONGEST_PARAMETER_FILE:
+            raise ValueError(f"it is larger than the {LONGEST_PARAMETER_FILE} bytes that such a file may have")
+        # Editors of Windows put a byte-order mark at its start.
+        content = json.loads(text.decode("utf-8-sig"), object_pairs_hook=_unique, parse_constant=_no_number)
+    except (OSError, ValueError, RecursionError) as error:
         raise ValueError(f"cannot read the parameter file {path}: {error}") from None
     if not isinstance(content, dict) or not isinstance(content.get("values"), dict):
         raise ValueError(f'{path} is no parameter file: expected {{"unit": NAME, "values": {{...}}}}')
     if content.get("unit") != unit:
-        raise ValueError(f"{path} is for {content.get('unit')}: expected a file for {unit}")
+        raise ValueError(f"{path} is for {content.get('unit')!r}: expected a file for {unit}")
     return content["values"]
+
+
+def _unique(pairs: list[tuple[str, object]]) -> dict[str, object]:
+    """A JSON object, refused if it has a key twice."""
+    content: dict[str, object] = {}
+    for key, value in pairs:
+        if key in content:
+            raise ValueError(f"the key {key!r} is there twice, expected one value")
+        content[key] = value
+    return content
+
+
+def _no_number(text: str) -> None:
+    raise ValueError(f"{text} is no number of JSON")
 
 
 def enumeration_items(variable: ModelVariable) -> dict[str, int]:

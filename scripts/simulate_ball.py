@@ -11,19 +11,16 @@ from __future__ import annotations
 
 import argparse
 import math
-import sys
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 
+import command_line
 import numpy as np
+from command_line import number
 from cosimulation import Fmu
-from fmpy.fmi1 import FMICallException
 from matplotlib import pyplot
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-
-REPOSITORY = Path(__file__).resolve().parent.parent
 
 # Wires: output of one unit, input of the other. The true state is for controller.feedback = state only.
 PLANT_TO_CONTROLLER = {
@@ -238,11 +235,7 @@ def draw_errors(panel: Axes, trajectory: Trajectory) -> None:
 
 
 def arguments() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
-        description=__doc__.split("\n")[0], formatter_class=argparse.ArgumentDefaultsHelpFormatter
-    )
-    parser.add_argument("--fmi", type=int, choices=[2, 3], default=3, help="FMI version of the FMUs")
-    parser.add_argument("--dist", type=Path, default=REPOSITORY / "dist", help="directory with fmi2/ and fmi3/")
+    parser = command_line.parser(__doc__)
     parser.add_argument(
         "--order",
         choices=["controller-first", "parallel"],
@@ -254,18 +247,19 @@ def arguments() -> argparse.Namespace:
         "--observer", default="drem", help="observer: drem, polynomial_newton or polynomial_newton_adaptive"
     )
     parser.add_argument(
-        "--flux-error", type=float, default=0.1, metavar="SHARE", help="share of the flux the observer misses at first"
+        "--flux-error",
+        type=number("1"),
+        default=0.1,
+        metavar="SHARE",
+        help="share of the flux the observer misses at first",
     )
-    parser.add_argument("--initial-position", type=float, default=0.0, metavar="M", help="y(0) in m")
-    parser.add_argument("--noise", type=float, default=0.0, metavar="A", help="current noise, standard deviation in A")
-    parser.add_argument("--seed", type=int, default=1, help="seed of the noise")
-    parser.add_argument("--stop-time", type=float, default=4.0, metavar="S", help="end of the simulation in s")
+    parser.add_argument("--initial-position", type=number("m"), default=0.0, metavar="M", help="y(0) in m")
     parser.add_argument(
-        "--step-size", type=float, default=1e-4, metavar="S", help="sample time and communication step size in s"
+        "--noise", type=number("A"), default=0.0, metavar="A", help="current noise, standard deviation in A"
     )
-    parser.add_argument("--out", type=Path, metavar="FILE", help="image to write, for instance ball.png")
-    parser.add_argument("--show", action="store_true", help="open a window with the plots")
-    return parser.parse_args()
+    parser.add_argument("--seed", type=command_line.seed, default=1, help="seed of the noise")
+    command_line.add_run_options(parser, 4.0, 1e-4, "sample time and communication step size in s", "ball.png")
+    return command_line.parse(parser)
 
 
 def title(options: argparse.Namespace, fmi_version: str) -> str:
@@ -278,10 +272,8 @@ def title(options: argparse.Namespace, fmi_version: str) -> str:
 
 def main() -> None:
     options = arguments()
-    if not options.show:
-        pyplot.switch_backend("Agg")
     folder = options.dist / f"fmi{options.fmi}"
-    try:
+    with command_line.explained():
         with (
             Fmu(folder / "LevitatedBallPlant.fmu") as plant,
             Fmu(folder / "LevitatedBallController.fmu") as controller,
@@ -290,16 +282,7 @@ def main() -> None:
             reference = REFERENCES[options.reference][0]
             trajectory = simulate(plant, controller, reference, options.order, options.step_size, options.stop_time)
             figure = draw(trajectory, title(options, plant.description.fmiVersion))
-    except FileNotFoundError as error:
-        sys.exit(f"{error}\nBuild the FMUs first: cargo run --release -- build")
-    except (ValueError, FMICallException) as error:
-        sys.exit(str(error))
-    print(summary(trajectory))
-    if options.out:
-        figure.savefig(options.out, dpi=150)
-        print(f"Figure: {options.out}")
-    if options.show:
-        pyplot.show()
+    command_line.finish(summary(trajectory), figure, options)
 
 
 if __name__ == "__main__":

@@ -8,18 +8,15 @@ python scripts/simulate_bearing.py --law b --initial-position 0.001 --out bearin
 from __future__ import annotations
 
 import argparse
-import sys
 from dataclasses import dataclass
-from pathlib import Path
 
+import command_line
 import numpy as np
+from command_line import number
 from cosimulation import Fmu
-from fmpy.fmi1 import FMICallException
 from matplotlib import pyplot
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-
-REPOSITORY = Path(__file__).resolve().parent.parent
 
 STATE = ["position", "velocity", "flux"]
 ESTIMATE = ["estimate.position", "estimate.velocity", "estimate.flux"]
@@ -167,26 +164,19 @@ def draw_errors(panel: Axes, time: np.ndarray, errors: np.ndarray, marker: str) 
 
 
 def arguments() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
-        description=__doc__.split("\n")[0], formatter_class=argparse.ArgumentDefaultsHelpFormatter
-    )
-    parser.add_argument("--fmi", type=int, choices=[2, 3], default=3, help="FMI version of the FMUs")
-    parser.add_argument("--dist", type=Path, default=REPOSITORY / "dist", help="directory with fmi2/ and fmi3/")
+    parser = command_line.parser(__doc__)
     parser.add_argument(
         "--order",
         choices=["controller-first", "parallel"],
         default="controller-first",
         help="exchange order; parallel lets the observer use the measured voltage",
     )
-    parser.add_argument("--initial-position", type=float, default=0.01, metavar="M", help="x1(0) in m")
-    parser.add_argument("--initial-voltage", type=float, default=-150.0, metavar="V", help="u(0) in V")
+    parser.add_argument("--initial-position", type=number("m"), default=0.01, metavar="M", help="x1(0) in m")
+    parser.add_argument("--initial-voltage", type=number("V"), default=-150.0, metavar="V", help="u(0) in V")
     parser.add_argument("--law", default="a", help="control law: a, b or c for equation (8a), (8b) or (8c)")
-    parser.add_argument("--bias-flux", type=float, default=0.0, metavar="WB", help="Phi0 in Wb")
-    parser.add_argument("--stop-time", type=float, default=10.0, metavar="S", help="end of the simulation in s")
-    parser.add_argument("--step-size", type=float, default=1e-3, metavar="S", help="communication step size in s")
-    parser.add_argument("--out", type=Path, metavar="FILE", help="image to write, for instance bearing.png")
-    parser.add_argument("--show", action="store_true", help="open a window with the plots")
-    return parser.parse_args()
+    parser.add_argument("--bias-flux", type=number("Wb"), default=0.0, metavar="WB", help="Phi0 in Wb")
+    command_line.add_run_options(parser, 10.0, 1e-3, "communication step size in s", "bearing.png")
+    return command_line.parse(parser)
 
 
 def title(options: argparse.Namespace, fmi_version: str) -> str:
@@ -199,10 +189,8 @@ def title(options: argparse.Namespace, fmi_version: str) -> str:
 
 def main() -> None:
     options = arguments()
-    if not options.show:
-        pyplot.switch_backend("Agg")
     folder = options.dist / f"fmi{options.fmi}"
-    try:
+    with command_line.explained():
         with (
             Fmu(folder / "MagneticBearingPlant.fmu") as plant,
             Fmu(folder / "MagneticBearingController.fmu") as controller,
@@ -210,16 +198,7 @@ def main() -> None:
             initialize(plant, controller, options)
             trajectory = simulate(plant, controller, options.order, options.step_size, options.stop_time)
             figure = draw(trajectory, plant, title(options, plant.description.fmiVersion))
-    except FileNotFoundError as error:
-        sys.exit(f"{error}\nBuild the FMUs first: cargo run --release -- build")
-    except (ValueError, FMICallException) as error:
-        sys.exit(str(error))
-    print(summary(trajectory))
-    if options.out:
-        figure.savefig(options.out, dpi=150)
-        print(f"Figure: {options.out}")
-    if options.show:
-        pyplot.show()
+    command_line.finish(summary(trajectory), figure, options)
 
 
 if __name__ == "__main__":

@@ -8,18 +8,16 @@ python scripts/simulate_rig.py --observer nonlinear --force 0.02 --out rig.png
 from __future__ import annotations
 
 import argparse
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 
+import command_line
 import numpy as np
+from command_line import number
 from cosimulation import Fmu, Value, parameter_values
-from fmpy.fmi1 import FMICallException
 from matplotlib import pyplot
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-
-REPOSITORY = Path(__file__).resolve().parent.parent
 
 # Wires: output of one unit, input of the other.
 PLANT_TO_CONTROLLER = {"sensor_voltage_measured": "sensor_voltage", "voltage_measured": "voltage_applied"}
@@ -166,52 +164,42 @@ def metric_input_gain(controller: Fmu) -> float:
 
 
 def arguments() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
-        description=__doc__.split("\n")[0], formatter_class=argparse.ArgumentDefaultsHelpFormatter
-    )
-    parser.add_argument("--fmi", type=int, choices=[2, 3], default=3, help="FMI version of the FMUs")
-    parser.add_argument("--dist", type=Path, default=REPOSITORY / "dist", help="directory with fmi2/ and fmi3/")
+    parser = command_line.parser(__doc__)
     parser.add_argument("--observer", help="linear or nonlinear; the FMU's start value, linear, if not given")
     parser.add_argument("--control", default="pid", help="pid, or disturbance_rejection through the extended state")
     parser.add_argument(
         "--parameters", type=Path, metavar="FILE", help="parameter file for the controller, of maglev-fmu tune"
     )
-    parser.add_argument("--position", type=float, default=0.009, metavar="M", help="where the ball starts, in m")
-    parser.add_argument("--amplitude", type=float, default=0.1, metavar="V", help="sine of the reference, in V")
-    parser.add_argument("--frequency", type=float, default=0.5, metavar="HZ", help="its frequency in Hz")
-    parser.add_argument("--force", type=float, default=0.0, metavar="N", help="force that pushes the ball down, in N")
-    parser.add_argument("--force-time", type=float, default=1.0, metavar="S", help="from when on it pushes, in s")
-    parser.add_argument("--noise", type=float, default=0.0, metavar="V", help="standard deviation of the sensor in V")
-    parser.add_argument("--seed", type=int, default=1, help="seed of the noise")
-    parser.add_argument("--stop-time", type=float, default=4.0, metavar="S", help="end of the simulation in s")
-    parser.add_argument("--step-size", type=float, default=1e-3, metavar="S", help="communication step size in s")
-    parser.add_argument("--out", type=Path, metavar="FILE", help="image to write, for instance rig.png")
-    parser.add_argument("--show", action="store_true", help="open a window with the plots")
-    return parser.parse_args()
+    parser.add_argument(
+        "--position", type=number("m"), default=0.009, metavar="M", help="where the ball starts, in m"
+    )
+    parser.add_argument("--amplitude", type=number("V"), default=0.1, metavar="V", help="sine of the reference, in V")
+    parser.add_argument("--frequency", type=number("Hz"), default=0.5, metavar="HZ", help="its frequency in Hz")
+    parser.add_argument(
+        "--force", type=number("N"), default=0.0, metavar="N", help="force that pushes the ball down, in N"
+    )
+    parser.add_argument(
+        "--force-time", type=number("s"), default=1.0, metavar="S", help="from when on it pushes, in s"
+    )
+    parser.add_argument(
+        "--noise", type=number("V"), default=0.0, metavar="V", help="standard deviation of the sensor in V"
+    )
+    parser.add_argument("--seed", type=command_line.seed, default=1, help="seed of the noise")
+    command_line.add_run_options(parser, 4.0, 1e-3, "communication step size in s", "rig.png")
+    return command_line.parse(parser)
 
 
 def main() -> None:
     options = arguments()
-    if not options.show:
-        pyplot.switch_backend("Agg")
     folder = options.dist / f"fmi{options.fmi}"
-    try:
+    with command_line.explained():
         with Fmu(folder / "MaglevRigPlant.fmu") as plant, Fmu(folder / "MaglevRigController.fmu") as controller:
             initialize(plant, controller, options)
             trajectory = simulate(plant, controller, options)
             observer = controller.get("observer.kind")
             title = f"Maglev rig, {observer} extended state observer, {options.control}, FMI {options.fmi}"
             figure = draw(trajectory, plant, metric_input_gain(controller), title)
-    except FileNotFoundError as error:
-        sys.exit(f"{error}\nBuild the FMUs first: cargo run --release -- build")
-    except (KeyError, ValueError, FMICallException) as error:
-        sys.exit(str(error.args[0]) if isinstance(error, KeyError) else str(error))
-    print(summary(trajectory))
-    if options.out:
-        figure.savefig(options.out, dpi=150)
-        print(f"Figure: {options.out}")
-    if options.show:
-        pyplot.show()
+    command_line.finish(summary(trajectory), figure, options)
 
 
 if __name__ == "__main__":

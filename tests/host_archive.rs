@@ -1,6 +1,8 @@
 //! The host refuses files that are no FMUs, or none for this platform, with clear errors and without panics.
 #![cfg(feature = "tools")]
 
+mod small_unit;
+
 use std::env::consts::DLL_EXTENSION;
 use std::fs::File;
 use std::io::Write;
@@ -117,4 +119,19 @@ fn a_file_that_is_no_library_is_refused() {
         archive(&[("modelDescription.xml", DESCRIPTION.as_bytes()), (&library, b"not a library")]);
     let error = Fmu::open(&path).unwrap_err();
     assert!(matches!(&error, HostError::LoadLibrary { .. }), "{error}");
+}
+
+/// Guards: "dlopen failed" without what failed.
+#[cfg(target_os = "linux")]
+#[test]
+fn the_linker_says_what_a_library_lacks() {
+    let library = small_unit::compile(
+        "extern \"C\" { fn maglev_nowhere_to_be_found(); }\n\
+         #[no_mangle] pub extern \"C\" fn fmi3GetVersion() { unsafe { maglev_nowhere_to_be_found() } }",
+    );
+    let error = small_unit::open_with(small_unit::FMI3, &library).unwrap_err();
+    assert!(matches!(&error, HostError::LoadLibrary { .. }), "{error}");
+    assert!(error.to_string().contains("undefined symbol: maglev_nowhere_to_be_found"), "{error}");
+    let error = small_unit::open_with(small_unit::FMI3, b"not a library").unwrap_err().to_string();
+    assert!(error.contains("file too short") || error.contains("invalid ELF header"), "{error}");
 }

@@ -171,3 +171,62 @@ fn broken_descriptions_are_refused_with_the_reason() {
         "cannot read modelDescription.xml: the variable `position` has no type"
     );
 }
+
+/// Both standards ask for unique names, and FMI 3.0 (section 2.4.7.4) for unique value references; in FMI 2.0 (section
+/// 2.2.7) equal references of one base type are aliases.
+#[test]
+fn what_two_variables_may_not_share_is_refused_by_name() {
+    let message = |xml: &str| ModelDescription::parse(xml).unwrap_err().to_string();
+    let twice = message(&FMI2.replace("name=\"force\"", "name=\"position\""));
+    assert!(twice.contains("the name `position` is given to two variables"), "{twice}");
+    assert!(
+        twice.contains("value reference 1 (Float64)") && twice.contains("value reference 2 (Float64)"),
+        "{twice}"
+    );
+    let alias = message(&FMI3.replace("<Alias name=\"h\"/>", "<Alias name=\"current\"/>"));
+    assert!(alias.contains("the name `current`"), "{alias}");
+    let reference =
+        message(&FMI3.replace("name=\"i8\" valueReference=\"4\"", "name=\"i8\" valueReference=\"2\""));
+    assert!(
+        reference.contains("the value reference 2 is given to two variables, `current` and `i8`"),
+        "{reference}"
+    );
+    ModelDescription::parse(
+        &FMI2.replace("name=\"force\" valueReference=\"2\"", "name=\"force\" valueReference=\"1\""),
+    )
+    .unwrap();
+}
+
+/// Guards: times that no simulation can start or end at.
+#[test]
+fn experiments_that_cannot_be_run_are_refused() {
+    let parse = |experiment: &str| {
+        let old = "startTime=\"0.5\" stopTime=\"1e1\" stepSize=\"1e-4\"";
+        ModelDescription::parse(&FMI2.replace(old, experiment))
+    };
+    for (experiment, expected) in [
+        ("startTime=\"NaN\"", "startTime=\"NaN\" of DefaultExperiment is not a finite number"),
+        ("startTime=\"-INF\"", "startTime=\"-INF\" of DefaultExperiment is not a finite number"),
+        ("stopTime=\"1e999\"", "stopTime=\"1e999\" of DefaultExperiment is not a finite number"),
+        (
+            "startTime=\"2\" stopTime=\"1\"",
+            "stopTime=\"1\" of DefaultExperiment is not a finite number that is not below",
+        ),
+        ("stopTime=\"-1\"", "not below startTime"),
+        ("stepSize=\"0\"", "stepSize=\"0\" of DefaultExperiment is not a finite number greater than 0"),
+        ("stepSize=\"-1e-3\"", "greater than 0"),
+        (
+            "tolerance=\"-1e-6\"",
+            "tolerance=\"-1e-6\" of DefaultExperiment is not a finite number, 0 or greater",
+        ),
+    ] {
+        let message = parse(experiment).unwrap_err().to_string();
+        assert!(message.contains(expected), "{experiment}: {message}");
+    }
+    let experiment = parse("startTime=\"-2\" stopTime=\"-1\"").unwrap().default_experiment;
+    assert_eq!(
+        (experiment.start_time, experiment.stop_time),
+        (Some(-2.0), Some(-1.0)),
+        "time may be negative"
+    );
+}

@@ -1,9 +1,13 @@
 //! The commands `build` and `describe`.
 #![cfg(feature = "tools")]
 
+mod library_file;
+
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
+
+use object::Architecture;
 
 fn maglev_fmu(directory: &Path, arguments: &[&str], time: Option<&str>) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_maglev-fmu"));
@@ -17,10 +21,8 @@ fn text(bytes: &[u8]) -> String {
 }
 
 fn write_library(directory: &Path) {
-    let mut bytes = b"\x7fELF\x02\x01".to_vec();
-    bytes.resize(18, 0);
-    bytes.extend([62, 0]);
-    fs::write(directory.join("library.so"), bytes).unwrap();
+    fs::rename(library_file::write_library(directory, Architecture::X86_64), directory.join("library.so"))
+        .unwrap();
 }
 
 #[test]
@@ -65,6 +67,20 @@ fn errors_name_the_value_and_the_cause() {
         assert!(expected.iter().all(|part| message.contains(part)), "{message}");
         assert!(!directory.path().join("dist").exists());
     }
+}
+
+/// Guards: twelve packages of a library that no importer can use.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_program_is_no_library() {
+    let directory = tempfile::tempdir().unwrap();
+    let output = maglev_fmu(directory.path(), &["build", "--library", "/bin/ls"], None);
+    assert_eq!(output.status.code(), Some(1));
+    let message = text(&output.stderr);
+    assert!(message.contains("/bin/ls is no "), "{message}");
+    assert!(!directory.path().join("dist").exists());
+    let endless = maglev_fmu(directory.path(), &["build", "--library", "/dev/zero"], None);
+    assert!(text(&endless.stderr).contains("larger than the "), "{}", text(&endless.stderr));
 }
 
 #[test]

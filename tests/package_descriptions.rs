@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use maglev_fmu::package::{FmiVersion, checked_in_files, describe, readme_with_tables};
+use maglev_fmu::package::{Form, checked_in_files, describe, readme_with_tables};
 
 const RENEW: &str = "renew it with `cargo run -- describe`";
 
@@ -30,8 +30,8 @@ fn model_descriptions_are_up_to_date() {
 fn no_model_description_is_left_over() {
     let expected: BTreeSet<PathBuf> =
         checked_in_files().unwrap().into_iter().map(|(path, _)| root().join(path)).collect();
-    for version in FmiVersion::ALL {
-        for file in fs::read_dir(root().join("modelDescription").join(version.directory())).unwrap() {
+    for form in Form::ALL {
+        for file in fs::read_dir(root().join("modelDescription").join(form.directory())).unwrap() {
             let path = file.unwrap().path();
             assert!(expected.contains(&path), "{} describes no unit: delete it", path.display());
         }

@@ -5,9 +5,9 @@ mod package_xml;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use maglev_fmu::package::{Capabilities, FmiVersion, GenerationTime, model_description};
+use maglev_fmu::package::{Capabilities, FmiVersion, Form, GenerationTime, model_description};
 use maglev_fmu::unit::variable::{Causality, DependencyKind, Kind};
-use maglev_fmu::unit::{Description, StartValues, UNITS};
+use maglev_fmu::unit::{Description, Edition, StartValues, UNITS};
 use package_xml::Element;
 
 /// A variable of either standard.
@@ -65,19 +65,19 @@ fn units(root: &Element) -> BTreeMap<&str, Vec<&str>> {
     units
 }
 
-fn check_all(check: impl Fn(&'static Description, FmiVersion, &Element)) {
-    for version in FmiVersion::ALL {
-        for unit in UNITS {
-            let text = model_description(unit.description, StartValues::TABLE, version, None).unwrap();
-            check(unit.description, version, &Element::parse(&text));
+fn check_all(check: impl Fn(&'static Description, Form, &Element)) {
+    for unit in UNITS {
+        for form in Form::all_of(unit.description) {
+            let text = model_description(unit.description, StartValues::TABLE, form, None).unwrap();
+            check(unit.description, form, &Element::parse(&text));
         }
     }
 }
 
 #[test]
 fn heads_name_the_unit_and_its_token() {
-    check_all(|description, version, root| {
-        let (fmi_version, token) = match version {
+    check_all(|description, form, root| {
+        let (fmi_version, token) = match form.version {
             FmiVersion::Two => ("2.0", "guid"),
             FmiVersion::Three => ("3.0", "instantiationToken"),
         };
@@ -85,7 +85,7 @@ fn heads_name_the_unit_and_its_token() {
         for (attribute, value) in [
             ("fmiVersion", fmi_version),
             ("modelName", description.name),
-            (token, description.token().as_str()),
+            (token, form.edition.token(description).as_str()),
             ("version", env!("CARGO_PKG_VERSION")),
             ("license", "MIT"),
             ("variableNamingConvention", "structured"),
@@ -103,25 +103,24 @@ fn heads_name_the_unit_and_its_token() {
 #[test]
 fn packages_carry_their_time() {
     let time = Some(GenerationTime::from_epoch_seconds(1_234_567_890));
-    for version in FmiVersion::ALL {
-        let root = Element::parse(
-            &model_description(UNITS[0].description, StartValues::TABLE, version, time).unwrap(),
-        );
+    for form in Form::all_of(UNITS[0].description) {
+        let root =
+            Element::parse(&model_description(UNITS[0].description, StartValues::TABLE, form, time).unwrap());
         assert_eq!(root.attribute("generationDateAndTime"), Some("2009-02-13T23:31:30Z"));
     }
 }
 
 #[test]
 fn flags_are_those_of_the_library() {
-    check_all(|description, version, root| {
-        let can = Capabilities::of(description);
+    check_all(|description, form, root| {
+        let can = Capabilities::of(description, form.edition);
         let flags = root.child("CoSimulation");
         let mut expected = vec![
             ("needsExecutionTool", can.needs_execution_tool),
             ("canHandleVariableCommunicationStepSize", can.can_handle_variable_communication_step_size),
             ("canBeInstantiatedOnlyOncePerProcess", can.can_be_instantiated_only_once_per_process),
         ];
-        expected.extend(match version {
+        expected.extend(match form.version {
             FmiVersion::Two => vec![
                 ("canInterpolateInputs", can.can_interpolate_inputs),
                 ("canRunAsynchronuously", can.can_run_asynchronously),
@@ -155,8 +154,8 @@ fn flags_are_those_of_the_library() {
 
 #[test]
 fn flags_of_model_exchange_are_those_of_the_library() {
-    check_all(|description, version, root| {
-        let can = Capabilities::of(description);
+    check_all(|description, form, root| {
+        let can = Capabilities::of(description, form.edition);
         let elements: Vec<&Element> = root.children_named("ModelExchange").collect();
         assert_eq!(elements.len(), usize::from(description.offers_model_exchange()), "{}", description.name);
         let Some(flags) = elements.first() else { return };
@@ -165,7 +164,7 @@ fn flags_of_model_exchange_are_those_of_the_library() {
             ("needsExecutionTool", can.needs_execution_tool),
             ("canBeInstantiatedOnlyOncePerProcess", can.can_be_instantiated_only_once_per_process),
         ];
-        expected.extend(match version {
+        expected.extend(match form.version {
             FmiVersion::Two => vec![
                 ("completedIntegratorStepNotNeeded", !can.needs_completed_integrator_step),
                 ("canNotUseMemoryManagementFunctions", can.can_not_use_memory_management_functions),
@@ -192,8 +191,8 @@ fn flags_of_model_exchange_are_those_of_the_library() {
 
 #[test]
 fn states_are_referred_to_by_their_derivatives() {
-    check_all(|description, version, root| {
-        let offset = if version == FmiVersion::Two { 1 } else { 0 };
+    check_all(|description, form, root| {
+        let offset = if form.version == FmiVersion::Two { 1 } else { 0 };
         let variables = variables(root);
         for (variable, row) in variables.iter().zip(description.variables) {
             let state =
@@ -203,20 +202,21 @@ fn states_are_referred_to_by_their_derivatives() {
             assert_eq!(reinit, row.is_reinitialised.then_some("true"), "{}", row.name);
         }
         let count = description.event_indicators().count().to_string();
-        let expected = (version == FmiVersion::Two && description.offers_model_exchange()).then_some(count);
+        let expected =
+            (form.version == FmiVersion::Two && description.offers_model_exchange()).then_some(count);
         assert_eq!(root.attribute("numberOfEventIndicators"), expected.as_deref());
     });
 }
 
 #[test]
 fn variables_are_the_rows_of_the_table() {
-    check_all(|description, version, root| {
+    check_all(|description, form, root| {
         let variables = variables(root);
         assert_eq!(variables.len(), description.variables.len());
         for (reference, (variable, row)) in variables.iter().zip(description.variables).enumerate() {
             assert_eq!(variable.name, row.name);
             assert_eq!(variable.head.attribute("valueReference"), Some(reference.to_string().as_str()));
-            let kind = match (version, row.kind) {
+            let kind = match (form.version, row.kind) {
                 (FmiVersion::Two, Kind::Real(_)) => "Real",
                 (FmiVersion::Three, Kind::Real(_)) => "Float64",
                 (FmiVersion::Two, Kind::Integer) => "Integer",
@@ -230,23 +230,31 @@ fn variables_are_the_rows_of_the_table() {
 }
 
 #[test]
-fn sampled_units_have_two_clocks_and_may_be_scheduled() {
-    check_all(|description, version, root| {
+fn clocked_editions_have_two_clocks_and_may_be_scheduled_and_plain_ones_have_neither() {
+    check_all(|description, form, root| {
         let elements = root.child("ModelVariables").children.iter();
         let clocks: Vec<_> = elements.filter(|element| element.name == "Clock").collect();
         let scheduled = root.children_named("ScheduledExecution").count();
+        let has_events = root.child("CoSimulation").attribute("hasEventMode");
         let intermediate = variables(root)
             .iter()
             .filter(|variable| variable.head.attribute("intermediateUpdate") == Some("true"))
             .map(|variable| (variable.head.attribute("causality"), variable.head.attribute("variability")))
             .collect::<BTreeSet<_>>();
-        if version == FmiVersion::Two || !description.is_sampled() {
-            assert_eq!((clocks.len(), scheduled, intermediate.len()), (0, 0, 0));
+        // Within a step only continuous inputs may be set, and nothing that is discrete may be asked for.
+        let calls_back = form.version == FmiVersion::Three && description.is_sampled();
+        let expected = calls_back.then_some((Some("input"), Some("continuous")));
+        assert_eq!(intermediate, expected.into_iter().collect());
+        let structure = &root.child("ModelStructure").children;
+        let rows = structure.iter().filter_map(|row| row.attribute("valueReference")?.parse::<usize>().ok());
+        let of_clocks = rows.filter(|reference| *reference >= description.variables.len()).count();
+        if form.edition == Edition::Plain {
+            // Many importers misread clocks and what goes with them.
+            assert_eq!((clocks.len(), scheduled, of_clocks), (0, 0, 0));
+            assert!(matches!(has_events, None | Some("false")));
             return;
         }
-        // Within a step only continuous inputs may be set, and nothing that is discrete may be asked for.
-        assert_eq!(intermediate, BTreeSet::from([(Some("input"), Some("continuous"))]));
-        assert_eq!(scheduled, 1);
+        assert_eq!((scheduled, has_events), (1, Some("true")));
         let identifier = root.child("ScheduledExecution").attribute("modelIdentifier");
         assert_eq!(identifier, Some(description.name));
         let expected = [
@@ -260,11 +268,19 @@ fn sampled_units_have_two_clocks_and_may_be_scheduled() {
             let reference = (description.variables.len() + index).to_string();
             assert_eq!(clock.attribute("valueReference"), Some(reference.as_str()));
             assert_eq!(clock.attribute("variability"), Some("discrete"));
-            // The interval is to be asked for: it follows from a parameter.
-            assert_eq!(clock.attribute("intervalDecimal"), None);
+            // "This attribute is required if Clock type is constant, fixed or tunable", section 2.4.5.1.
+            let interval =
+                clock.attribute("intervalDecimal").map(|interval| interval.parse::<f64>().unwrap());
+            let (_, sample_time) = description.find("sample_time").unwrap();
+            assert_eq!(interval, (index == 0).then_some(sample_time.start));
         }
-        // Outputs can be read outside of ticks.
+        // Outputs can be read outside of ticks, `ticked` at ticks only.
         assert!(variables(root).iter().all(|variable| variable.head.attribute("clocks").is_none()));
+        let [tick, ticked] = [clocks[0], clocks[1]];
+        let bound_to = [tick, ticked].map(|clock| clock.attribute("clocks"));
+        assert_eq!(bound_to, [None, tick.attribute("valueReference")]);
+        // It is listed as an output and, being bound to a clock, not among the initial unknowns.
+        assert_eq!(of_clocks, 1);
         let output = root.child("ModelStructure").children_named("Output").last().unwrap();
         assert_eq!(output.attribute("valueReference"), clocks[1].attribute("valueReference"));
         assert_eq!(output.attribute("dependencies"), clocks[0].attribute("valueReference"));
@@ -344,7 +360,7 @@ fn numbers_keep_all_their_digits() {
 
 #[test]
 fn types_and_units_are_defined_and_used() {
-    check_all(|_, version, root| {
+    check_all(|_, form, root| {
         let (types, units) = (types(root), units(root));
         let mut used = BTreeSet::new();
         for variable in variables(root) {
@@ -354,7 +370,7 @@ fn types_and_units_are_defined_and_used() {
                 "Real" | "Float64" => {
                     let definition = types[declared.expect(variable.name)];
                     let unit = definition.attribute("unit").unwrap();
-                    match version {
+                    match form.version {
                         FmiVersion::Two => assert_eq!(variable.value.attribute("unit"), Some(unit)),
                         FmiVersion::Three => {
                             for attribute in ["unit", "displayUnit", "nominal", "quantity"] {
@@ -380,6 +396,14 @@ fn types_and_units_are_defined_and_used() {
             used.extend(declared);
         }
         assert_eq!(used, types.keys().copied().collect());
+        if form.version == FmiVersion::Three {
+            // FMPy before 0.3.24 refuses types with any other attribute, a description for one.
+            let read = ["name", "quantity", "unit", "displayUnit", "min", "max", "nominal"];
+            for definition in types.values() {
+                let unread = definition.attributes.iter().find(|(name, _)| !read.contains(&name.as_str()));
+                assert_eq!(unread, None, "{definition:?}");
+            }
+        }
         let of_types: BTreeSet<_> = types.values().filter_map(|element| element.attribute("unit")).collect();
         assert_eq!(of_types, units.keys().copied().collect());
     });
@@ -387,28 +411,29 @@ fn types_and_units_are_defined_and_used() {
 
 #[test]
 fn structure_lists_outputs_and_initial_unknowns_exactly() {
-    check_all(|description, version, root| {
+    check_all(|description, form, root| {
         let structure = root.child("ModelStructure");
-        let (mut outputs, mut unknowns, key, offset): (Vec<&Element>, Vec<&Element>, _, _) = match version {
-            FmiVersion::Two => (
-                structure.child("Outputs").children.iter().collect(),
-                structure.child("InitialUnknowns").children.iter().collect(),
-                "index",
-                1,
-            ),
-            FmiVersion::Three => (
-                structure.children_named("Output").collect(),
-                structure.children_named("InitialUnknown").collect(),
-                "valueReference",
-                0,
-            ),
-        };
+        let (mut outputs, mut unknowns, key, offset): (Vec<&Element>, Vec<&Element>, _, _) =
+            match form.version {
+                FmiVersion::Two => (
+                    structure.child("Outputs").children.iter().collect(),
+                    structure.child("InitialUnknowns").children.iter().collect(),
+                    "index",
+                    1,
+                ),
+                FmiVersion::Three => (
+                    structure.children_named("Output").collect(),
+                    structure.children_named("InitialUnknown").collect(),
+                    "valueReference",
+                    0,
+                ),
+            };
         let row = |text: &str| text.parse::<usize>().unwrap() - offset;
         // The clock that the unit activates is an output, too; it has nothing to do with what follows.
-        for elements in [&mut outputs, &mut unknowns] {
+        for (elements, elements_are_outputs) in [(&mut outputs, true), (&mut unknowns, false)] {
             let count = elements.len();
             elements.retain(|element| row(element.attribute(key).unwrap()) < description.variables.len());
-            let clocks = version == FmiVersion::Three && description.is_sampled();
+            let clocks = form.edition == Edition::Clocked && elements_are_outputs;
             assert_eq!(count - elements.len(), usize::from(clocks));
         }
         let rows = |elements: &[&Element]| -> Vec<usize> {
@@ -427,7 +452,7 @@ fn structure_lists_outputs_and_initial_unknowns_exactly() {
         expected.dedup();
         assert_eq!(rows(&unknowns), expected);
 
-        let (listed, indicators): (Vec<&Element>, Vec<&Element>) = match version {
+        let (listed, indicators): (Vec<&Element>, Vec<&Element>) = match form.version {
             FmiVersion::Two => (
                 structure.children_named("Derivatives").flat_map(|element| &element.children).collect(),
                 Vec::new(),
@@ -438,7 +463,7 @@ fn structure_lists_outputs_and_initial_unknowns_exactly() {
             ),
         };
         assert_eq!(rows(&listed), derivatives);
-        if version == FmiVersion::Three {
+        if form.version == FmiVersion::Three {
             assert_eq!(rows(&indicators), description.event_indicators().collect::<Vec<_>>());
         }
         for unknown in outputs.into_iter().chain(listed).chain(indicators) {
@@ -455,7 +480,7 @@ fn structure_lists_outputs_and_initial_unknowns_exactly() {
             // Parameters are knowns of FMI 3.0 only.
             let is_known = |name: &str| {
                 let (_, known) = description.find(name).unwrap();
-                version == FmiVersion::Three || known.causality != Causality::Parameter
+                form.version == FmiVersion::Three || known.causality != Causality::Parameter
             };
             let declared = variable.depends_on.iter().filter(|dependency| is_known(dependency.name));
             let declared: BTreeSet<(&str, &str)> = declared

@@ -4,9 +4,8 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-use maglev_fmu::fmi::FmiVersion;
 use maglev_fmu::host::{Fmu, Instance, Logging};
-use maglev_fmu::package::{self, GenerationTime, Library, ParameterFile};
+use maglev_fmu::package::{self, Form, GenerationTime, Library, ParameterFile};
 use maglev_fmu::unit::MAGNETIC_BEARING_CONTROLLER as CONTROLLER;
 use serde_json::json;
 
@@ -28,8 +27,8 @@ static PACKAGES: LazyLock<PathBuf> = LazyLock::new(|| {
     directory
 });
 
-fn open(packages: &Path, version: FmiVersion) -> Fmu {
-    Fmu::open(&packages.join(version.directory()).join("MagneticBearingController.fmu")).unwrap()
+fn open(packages: &Path, form: Form) -> Fmu {
+    Fmu::open(&packages.join(form.directory()).join("MagneticBearingController.fmu")).unwrap()
 }
 
 fn voltage_of_first_tick(instance: &mut Instance) -> f64 {
@@ -40,8 +39,8 @@ fn voltage_of_first_tick(instance: &mut Instance) -> f64 {
 
 #[test]
 fn library_starts_with_what_the_description_says() {
-    for version in FmiVersion::ALL {
-        let fmu = open(&PACKAGES, version);
+    for form in Form::all_of(CONTROLLER.description) {
+        let fmu = open(&PACKAGES, form);
         // Nothing is set.
         let mut instance = fmu.instantiate("controller", Logging::Off).unwrap();
         instance.initialise(0.0, None).unwrap();
@@ -63,8 +62,8 @@ fn library_starts_with_what_the_description_says() {
 
 #[test]
 fn start_values_can_still_be_set() {
-    for version in FmiVersion::ALL {
-        let mut instance = open(&PACKAGES, version).instantiate("controller", Logging::Off).unwrap();
+    for form in Form::all_of(CONTROLLER.description) {
+        let mut instance = open(&PACKAGES, form).instantiate("controller", Logging::Off).unwrap();
         instance.set_by_name("controller.initial_voltage", -20.0).unwrap();
         assert_eq!(voltage_of_first_tick(&mut instance), -20.0);
     }
@@ -72,9 +71,9 @@ fn start_values_can_still_be_set() {
 
 #[test]
 fn a_forged_start_value_is_refused() {
-    for version in FmiVersion::ALL {
-        let fmu = open(&PACKAGES, version);
-        let token = CONTROLLER.description.token();
+    for form in Form::all_of(CONTROLLER.description) {
+        let fmu = open(&PACKAGES, form);
+        let token = form.edition.token(CONTROLLER.description);
         let (reference, _) = CONTROLLER.description.find("sample_time").unwrap();
         for (tail, reason) in [
             (format!(";{reference}=-1.0"), "expected 1e-6 to 1 s"),
@@ -92,7 +91,7 @@ fn parameter_sets_of_the_system_agree() {
     let file = std::fs::File::open(PACKAGES.join("bearing.ssp")).unwrap();
     let mut archive = zip::ZipArchive::new(file).unwrap();
     let mut text = String::new();
-    archive.by_name("resources/controller.ssv").unwrap().read_to_string(&mut text).unwrap();
+    archive.by_name("resources/MagneticBearingController.ssv").unwrap().read_to_string(&mut text).unwrap();
     let of = |name: &str| {
         let from = text.find(&format!("name=\"{name}\"")).unwrap();
         text[from..].split("value=\"").nth(1).unwrap().split('"').next().unwrap().parse::<f64>().unwrap()

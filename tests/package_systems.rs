@@ -1,41 +1,19 @@
 //! Terminals of the units and system structure packages say what the table of systems says.
 #![cfg(feature = "tools")]
 
+mod built_packages;
+mod library_file;
 #[allow(dead_code, reason = "each test uses a part")]
 mod package_xml;
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs::{self, File};
-use std::io::Read;
-use std::path::Path;
 
-use maglev_fmu::package::{FmiVersion, GenerationTime, Library, build};
+use built_packages::{packages, path, ssp_version, text};
+use maglev_fmu::package::{FmiVersion, SystemForm};
+use maglev_fmu::unit::UNITS;
 use maglev_fmu::unit::system::{SYSTEMS, System};
 use maglev_fmu::unit::variable::{Causality, Kind};
-use maglev_fmu::unit::{Description, UNITS};
 use package_xml::Element;
-use tempfile::TempDir;
-use zip::ZipArchive;
-
-/// All packages, with a file that passes for a library.
-fn packages() -> TempDir {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path().join("library.so");
-    let mut bytes = b"\x7fELF\x02\x01".to_vec();
-    bytes.resize(18, 0);
-    bytes.extend([62, 0]);
-    fs::write(&path, bytes).unwrap();
-    let libraries = [Library::read(&path).unwrap()];
-    build(directory.path(), &libraries, GenerationTime::from_epoch_seconds(1_234_567_890)).unwrap();
-    directory
-}
-
-fn text(package: &Path, member: &str) -> String {
-    let mut archive = ZipArchive::new(File::open(package).unwrap()).unwrap();
-    let mut text = String::new();
-    archive.by_name(member).unwrap().read_to_string(&mut text).unwrap();
-    text
-}
 
 /// Variable to member of a terminal.
 fn members(terminal: &Element) -> BTreeMap<&str, &str> {
@@ -59,7 +37,7 @@ fn terminals_of_a_loop_fit_each_other() {
                 (name, Element::parse(&text(&package, "terminalsAndIcons/terminalsAndIcons.xml")))
             })
             .collect();
-        for System { name, plant, controller, sensing, actuation } in SYSTEMS {
+        for System { name, plant, controller, sensing, actuation, .. } in SYSTEMS {
             let [plant, controller] = [plant, controller].map(|unit| {
                 let all = terminals[unit.description.name].child("Terminals");
                 let mut found = all.children_named("Terminal");
@@ -81,122 +59,171 @@ fn terminals_of_a_loop_fit_each_other() {
     }
 }
 
+/// Whether packages of a form have connectors of the system itself.
+fn is_driven(form: SystemForm) -> bool {
+    form != SystemForm::Closed
+}
+
 /// Component called `name` of a system structure.
 fn component<'a>(structure: &'a Element, name: &str) -> &'a Element {
     let mut components = structure.child("ssd:System").child("ssd:Elements").children.iter();
     components.find(|component| component.attribute("name") == Some(name)).unwrap()
 }
 
-/// Unit of measure, if any, and kind of a connector.
-fn connector<'a>(component: &'a Element, name: &str) -> (Option<&'a str>, &'a str) {
-    let mut connectors = component.child("ssd:Connectors").children.iter();
+/// Unit of measure, if any, and kind of a connector of a component or system.
+fn connector<'a>(element: &'a Element, name: &str) -> (Option<&'a str>, &'a str) {
+    let mut connectors = element.child("ssd:Connectors").children.iter();
     let connector = connectors.find(|connector| connector.attribute("name") == Some(name)).unwrap();
     (connector.children[0].attribute("unit"), connector.attribute("kind").unwrap())
+}
+
+/// Start element, start connector, end element, end connector; no element is the system.
+type Wire = [Option<String>; 4];
+
+fn wires(structure: &Element) -> Vec<Wire> {
+    let connections = structure.child("ssd:System").child("ssd:Connections");
+    let ends = ["startElement", "startConnector", "endElement", "endConnector"];
+    let wire = |wire: &Element| ends.map(|end| wire.attribute(end).map(str::to_owned));
+    connections.children.iter().map(wire).collect()
 }
 
 #[test]
 fn systems_are_wired_as_the_table_says() {
     let directory = packages();
-    for system in SYSTEMS {
-        let package = directory.path().join(system.name).with_extension("ssp");
-        let structure = Element::parse(&text(&package, "SystemStructure.ssd"));
-        assert_eq!(structure.attribute("version"), Some("1.0"));
-        let [plant, controller] = ["plant", "controller"].map(|name| component(&structure, name));
-        let connections = structure.child("ssd:System").child("ssd:Connections");
-        let connections: BTreeSet<[&str; 4]> = connections
-            .children
-            .iter()
-            .map(|wire| {
-                ["startElement", "startConnector", "endElement", "endConnector"]
-                    .map(|end| wire.attribute(end).unwrap())
-            })
-            .collect();
-        let sensing = system.sensing.iter().map(|(output, input)| ["plant", output, "controller", input]);
-        let actuation = system.actuation.iter().map(|(output, input)| ["controller", output, "plant", input]);
-        assert_eq!(connections, sensing.chain(actuation).collect());
-        let units: BTreeSet<&str> = structure
-            .child("ssd:Units")
-            .children
-            .iter()
-            .map(|unit| unit.attribute("name").unwrap())
-            .collect();
-        for [start, output, end, input] in connections {
-            let (from, to) = if start == "plant" { (plant, controller) } else { (controller, plant) };
-            assert_ne!(start, end);
-            let ((of_output, kind_of_output), (of_input, kind_of_input)) =
-                (connector(from, output), connector(to, input));
-            assert_eq!((kind_of_output, kind_of_input), ("output", "input"));
-            assert_eq!(of_output, of_input, "{output} to {input}");
-            assert!(units.contains(of_output.unwrap()));
+    for form in SystemForm::ALL {
+        for system in SYSTEMS {
+            let structure = Element::parse(&text(&path(&directory, form, system), "SystemStructure.ssd"));
+            assert_eq!(structure.attribute("version"), Some(ssp_version(form)));
+            let [plant, controller] = [system.plant, system.controller].map(|unit| unit.description.name);
+            let inner: BTreeSet<Wire> = wires(&structure)
+                .into_iter()
+                .filter(|[start, _, end, _]| start.is_some() && end.is_some())
+                .collect();
+            let wire = |from: &str, output: &str, to: &str, input: &str| {
+                [from, output, to, input].map(|part| Some(part.to_owned()))
+            };
+            let sensing = system.sensing.iter().map(|(output, input)| wire(plant, output, controller, input));
+            let actuation =
+                system.actuation.iter().map(|(output, input)| wire(controller, output, plant, input));
+            assert_eq!(inner, sensing.chain(actuation).collect());
+            check_ends(&structure);
         }
-        // All inputs are wired; the standard asks for no others.
-        for component in [plant, controller] {
-            let inputs = component.child("ssd:Connectors").children.iter();
-            let inputs = inputs.filter(|connector| connector.attribute("kind") == Some("input")).count();
-            let wires =
-                if component.attribute("name") == Some("plant") { system.actuation } else { system.sensing };
-            assert_eq!(inputs, wires.len());
+    }
+}
+
+/// Both ends of every wire exist, fit, and have a unit of measure that is defined; every input that is a connector is
+/// the end of one wire, which FMPy needs.
+fn check_ends(structure: &Element) {
+    let system = structure.child("ssd:System");
+    let owner = |element: &Option<String>| element.as_ref().map_or(system, |name| component(structure, name));
+    let units = structure.child("ssd:Units").children.iter();
+    let units: BTreeSet<&str> = units.map(|unit| unit.attribute("name").unwrap()).collect();
+    let mut reached = BTreeMap::new();
+    let all = wires(structure);
+    for wire @ [start, output, end, input] in &all {
+        let (output, input) = (output.as_ref().unwrap(), input.as_ref().unwrap());
+        let (from, to) = (connector(owner(start), output), connector(owner(end), input));
+        assert_eq!(from.1, if start.is_some() { "output" } else { "input" }, "{wire:?}");
+        assert_eq!(to.1, if end.is_some() { "input" } else { "output" }, "{wire:?}");
+        assert_eq!(from.0, to.0, "{wire:?}");
+        assert!(units.contains(from.0.unwrap()), "{wire:?}");
+        *reached.entry((end.clone(), input.clone())).or_insert(0) += 1;
+    }
+    assert!(reached.values().all(|count| *count == 1), "{reached:?}");
+    for component in &system.child("ssd:Elements").children {
+        for connector in &component.child("ssd:Connectors").children {
+            if connector.attribute("kind") == Some("input") {
+                let [element, name] =
+                    [component, connector].map(|part| part.attribute("name").unwrap().to_owned());
+                assert!(reached.contains_key(&(Some(element), name.clone())), "{name}");
+            }
         }
     }
 }
 
 #[test]
-fn systems_hold_the_units_and_their_start_values() {
+fn what_the_loop_leaves_open_is_a_connector_of_the_system() {
     let directory = packages();
-    for system in SYSTEMS {
-        let package = directory.path().join(system.name).with_extension("ssp");
-        let structure = Element::parse(&text(&package, "SystemStructure.ssd"));
-        let mut archive = ZipArchive::new(File::open(&package).unwrap()).unwrap();
-        for (name, unit) in [("plant", system.plant), ("controller", system.controller)] {
-            let component = component(&structure, name);
-            let mut inside = Vec::new();
-            archive
-                .by_name(component.attribute("source").unwrap())
-                .unwrap()
-                .read_to_end(&mut inside)
-                .unwrap();
-            let fmu = directory.path().join("fmi2").join(unit.description.name).with_extension("fmu");
-            assert!(inside == fs::read(fmu).unwrap());
-            let bindings = &component.child("ssd:ParameterBindings").children;
-            assert_eq!(bindings.len(), 1);
-            let parameters = Element::parse(&text(&package, bindings[0].attribute("source").unwrap()));
-            check_parameters(&parameters, unit.description);
+    for form in SystemForm::ALL.into_iter().filter(|form| is_driven(*form)) {
+        for system in SYSTEMS {
+            let structure = Element::parse(&text(&path(&directory, form, system), "SystemStructure.ssd"));
+            let all = wires(&structure);
+            let inputs: BTreeSet<_> =
+                all.iter().filter(|wire| wire[0].is_none()).map(|wire| (&wire[2], &wire[3])).collect();
+            let outputs: BTreeSet<_> =
+                all.iter().filter(|wire| wire[2].is_none()).map(|wire| (&wire[0], &wire[1])).collect();
+            let ends = [(system.controller, system.sensing), (system.plant, system.actuation)];
+            let of = |causality: Causality| {
+                ends.into_iter().flat_map(move |(unit, wired)| {
+                    let rows = unit.description.variables.iter();
+                    let is_real = |kind| matches!(kind, Kind::Real(_));
+                    let rows = rows.filter(move |row| row.causality == causality && is_real(row.kind));
+                    let is_free = move |name| !wired.iter().any(|(_, input)| *input == name);
+                    let rows =
+                        rows.filter(move |row| row.causality == Causality::Output || is_free(row.name));
+                    rows.map(move |row| (unit.description.name, row.name))
+                })
+            };
+            let owned = |(element, name): (&str, &str)| (Some(element.to_owned()), Some(name.to_owned()));
+            let expected: BTreeSet<_> = of(Causality::Input).map(owned).collect();
+            assert_eq!(inputs, expected.iter().map(|(a, b)| (a, b)).collect(), "{}", system.name);
+            let expected: BTreeSet<_> = of(Causality::Output).map(owned).collect();
+            assert_eq!(outputs, expected.iter().map(|(a, b)| (a, b)).collect(), "{}", system.name);
+            let names = structure.child("ssd:System").child("ssd:Connectors").children.iter();
+            assert_eq!(names.len(), inputs.len() + outputs.len());
         }
     }
 }
 
-fn check_parameters(set: &Element, description: &Description) {
-    let units: BTreeSet<&str> =
-        set.child("ssv:Units").children.iter().map(|unit| unit.attribute("name").unwrap()).collect();
-    let parameters = &set.child("ssv:Parameters").children;
-    for parameter in parameters {
-        let name = parameter.attribute("name").unwrap();
-        let (_, variable) = description.find(name).unwrap();
-        assert_eq!(variable.causality, Causality::Parameter);
-        let typed = &parameter.children[0];
-        let value = typed.attribute("value").unwrap();
-        match variable.kind {
-            Kind::Real(quantity) => {
-                assert_eq!((typed.name.as_str(), value.parse()), ("ssv:Real", Ok(variable.start)), "{name}");
-                assert_eq!(typed.attribute("unit"), Some(quantity.unit.name));
-                assert!(units.contains(quantity.unit.name));
+/// Some importers refuse wires from and to the system itself.
+#[test]
+fn closed_packages_have_no_connectors_of_the_system() {
+    let directory = packages();
+    for system in SYSTEMS {
+        let structure =
+            Element::parse(&text(&path(&directory, SystemForm::Closed, system), "SystemStructure.ssd"));
+        assert!(wires(&structure).iter().all(|wire| wire.iter().all(Option::is_some)));
+        assert_eq!(structure.child("ssd:System").children_named("ssd:Connectors").count(), 0);
+    }
+}
+
+/// Importers that cut names at dots take a variable `controller.kp` for one of an element `controller`.
+#[test]
+fn no_variable_begins_with_the_name_of_an_element() {
+    let directory = packages();
+    for system in SYSTEMS {
+        let structure =
+            Element::parse(&text(&path(&directory, SystemForm::Closed, system), "SystemStructure.ssd"));
+        for element in &structure.child("ssd:System").child("ssd:Elements").children {
+            let name = element.attribute("name").unwrap();
+            for unit in [system.plant, system.controller] {
+                let rows = unit.description.variables.iter();
+                assert!(rows.into_iter().all(|row| row.name.split('.').next() != Some(name)), "{name}");
             }
-            Kind::Integer => {
-                assert_eq!(
-                    (typed.name.as_str(), value.parse()),
-                    ("ssv:Integer", Ok(variable.start)),
-                    "{name}"
-                );
-            }
-            _ => assert_eq!(
-                (typed.name.as_str(), value == "true"),
-                ("ssv:Boolean", variable.start != 0.0),
-                "{name}"
-            ),
         }
     }
-    let is_in_set = |kind: Kind| matches!(kind, Kind::Real(_) | Kind::Integer | Kind::Boolean);
-    let rows = description.variables.iter();
-    let expected = rows.filter(|row| row.causality == Causality::Parameter && is_in_set(row.kind)).count();
-    assert_eq!(parameters.len(), expected);
+}
+
+#[test]
+fn the_step_is_where_importers_look_for_it() {
+    let directory = packages();
+    for form in SystemForm::ALL {
+        for system in SYSTEMS {
+            let structure = Element::parse(&text(&path(&directory, form, system), "SystemStructure.ssd"));
+            let experiment = structure.child("ssd:DefaultExperiment");
+            let number =
+                |element: &Element, name: &str| element.attribute(name).unwrap().parse::<f64>().unwrap();
+            let for_cosim = experiment.child("ssd:Annotations").child("ssc:Annotation");
+            assert_eq!(for_cosim.attribute("type"), Some("com.opensimulationplatform"));
+            let step = for_cosim.child("osp:Algorithm").child("osp:FixedStepAlgorithm");
+            assert_eq!(number(step, "baseStepSize"), system.step_size());
+            let annotations = structure.child("ssd:System").child("ssd:Annotations");
+            let for_omsimulator = annotations.child("ssc:Annotation");
+            assert_eq!(for_omsimulator.attribute("type"), Some("org.openmodelica"));
+            let information = for_omsimulator.child("oms:Annotations").child("oms:SimulationInformation");
+            let master = information.child("oms:FixedStepMaster");
+            assert_eq!(number(master, "stepSize"), system.step_size());
+            assert_eq!(number(experiment, "stopTime"), system.stop_time());
+        }
+    }
 }

@@ -13,7 +13,7 @@ use maglev_fmu::observer::kalman::{KalmanObserver, KalmanSettings};
 use maglev_fmu::observer::newton::{NewtonObserver, NewtonSettings};
 use maglev_fmu::observer::reduced_newton::{ReducedNewtonObserver, ReducedNewtonSettings};
 use maglev_fmu::observer::windowed_newton::{WindowedNewtonObserver, WindowedNewtonSettings};
-use maglev_fmu::package::{FmiVersion, GenerationTime, Library, contents};
+use maglev_fmu::package::{Form, GenerationTime, Library, contents};
 use maglev_fmu::plant::magnetic_bearing::{MagneticBearing, Map};
 use maglev_fmu::unit::{MagneticBearingController, Silence, StartValues, Unit};
 use native::{APPLIED, OBSERVERS, get, set};
@@ -146,12 +146,12 @@ fn native_unit_runs_the_cores_observers() {
 }
 
 /// Writes the unit's package for tests, without compression: the library of this build is large.
-fn pack(version: FmiVersion, path: &Path) {
+fn pack(form: Form, path: &Path) {
     let library = Library::of_this_build().unwrap();
     let unit = MagneticBearingController::new();
     let time = GenerationTime::from_epoch_seconds(0);
     let mut archive = ZipWriter::new(File::create(path).unwrap());
-    for entry in contents(unit.description(), StartValues::TABLE, version, time, &[library]).unwrap() {
+    for entry in contents(unit.description(), StartValues::TABLE, form, time, &[library]).unwrap() {
         let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
         archive.start_file(entry.path, options).unwrap();
         archive.write_all(&entry.bytes).unwrap();
@@ -163,9 +163,9 @@ fn pack(version: FmiVersion, path: &Path) {
 fn packaged_units_run_the_cores_observers() {
     let directory = tempfile::tempdir().unwrap();
     let samples = samples();
-    for version in FmiVersion::ALL {
-        let path = directory.path().join(version.directory());
-        pack(version, &path);
+    for form in Form::ALL {
+        let path = directory.path().join(form.directory());
+        pack(form, &path);
         let fmu = Fmu::open(&path).unwrap();
         for (name, parameters) in OBSERVERS {
             let mut unit = fmu.instantiate(name, Logging::Off).unwrap();
@@ -181,7 +181,7 @@ fn packaged_units_run_the_cores_observers() {
                 unit.set_by_name("voltage_applied", sample.1).unwrap();
                 unit.step(tick as f64 * T, T).unwrap();
                 let actual = RESULTS.map(|result| unit.get_by_name(result).unwrap());
-                assert_eq!(actual, expected, "{name}, {version:?}, tick {tick}");
+                assert_eq!(actual, expected, "{name}, {form:?}, tick {tick}");
             }
         }
     }

@@ -26,6 +26,8 @@ class Task:
     interface: str = ANY
     """Interface type that the FMU must offer."""
     limit: Limit | None = None
+    packages: str = "*.ssp"
+    """Pattern of the systems that it is done with."""
 
 
 @dataclass(frozen=True)

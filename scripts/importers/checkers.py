@@ -20,6 +20,13 @@ def schema_errors(package: Path, member: str, schema: Path) -> list[str]:
     return [str(entry) for entry in validator.error_log]
 
 
+def fmi_version(description: bytes) -> str:
+    """Major version of the standard that a model description is written in."""
+    from lxml import etree
+
+    return etree.fromstring(description).get("fmiVersion")[0]
+
+
 def schemas() -> Path:
     """Where fmpy keeps the schemas of the standards."""
     import fmpy
@@ -37,7 +44,8 @@ def validate_with_fmpy(fmu: Path) -> str:
 
 def check_schemas(fmu: Path) -> str:
     """Model description, and terminals in the form that both standards take from FMI 3.0."""
-    version = fmu.parent.name
+    with ZipFile(fmu) as archive:
+        version = "fmi" + fmi_version(archive.read("modelDescription.xml"))
     files = {
         "modelDescription.xml": f"{version}/{version}ModelDescription.xsd",
         "terminalsAndIcons/terminalsAndIcons.xml": "fmi3/fmi3TerminalsAndIcons.xsd",

@@ -1,6 +1,7 @@
 """System structure packages in the importers that read them.
 
-All of them step both units and then pass the values on, so each is compared with such a loop of the two FMUs.
+All of them step both units and then pass the values on, so each is compared with such a loop of the two FMUs; and each
+has to show the physics: bearing and balls where the loop of the paper has them, and estimates that are right.
 """
 
 from __future__ import annotations
@@ -10,13 +11,15 @@ from tempfile import TemporaryDirectory
 from zipfile import ZipFile
 
 from cosimulation import Fmu, Value
-from importers import Task
+from importers import Limit, Task
 from importers.checkers import schema_errors
 from importers.in_cpp import load_ecos
+from importers.physics import duration, estimates, check_physics
 from importers.reference import compare
+from importers.system_structure import STRUCTURE, ParameterValues, SystemStructure
 
-STEPS = 500
-STRUCTURE = "SystemStructure.ssd"
+# Later the observer of the bearing makes more of the last digits, where the flux crosses zero.
+COMPARED_STEPS = 500
 # What becomes of a parameter set with an enumeration, in the programs' own words.
 ENUMERATION_ERRORS = {
     "FMPy": "invalid literal for int()",
@@ -29,104 +32,133 @@ class PlainLoop:
     """The two FMUs of a package, connected as it says, with the parameters that it binds."""
 
     def __init__(self, package: Path) -> None:
-        from fmpy.ssp.ssd import read_ssd
-
-        system = read_ssd(str(package)).system
-        self.connections = [
-            (c.startElement, c.startConnector, c.endElement, c.endConnector) for c in system.connections
-        ]
-        self.sources = {element.name: element.source for element in system.elements}
-        self.parameters = {
-            element.name: {
-                parameter.name: value_of(parameter)
-                for binding in element.parameterBindings
-                for values in binding.parameterValues
-                for parameter in values.parameters
-            }
-            for element in system.elements
-        }
         self.package = package
-        self.outputs = sorted({(element, connector) for element, connector, _, _ in self.connections})
-        with TemporaryDirectory() as folder, ZipFile(package) as archive:
-            step_sizes = []
-            for source in self.sources.values():
-                with Fmu(Path(archive.extract(source, folder))) as unit:
-                    step_sizes.append(float(unit.description.defaultExperiment.stepSize))
-        self.step_size = min(step_sizes)
+        self.structure = SystemStructure(package)
+        self.step_size = self.structure.step_size
+        self.steps = round(duration(package) / self.step_size)
+        wires = self.structure.inner_connections
+        self.outputs = sorted({(element, name) for element, name, _, _ in wires} | estimates(self.structure))
 
-    def rows(self, steps: int, passes_start_values: bool) -> list[list[float]]:
-        """Values of all connected outputs after each step; `passes_start_values` says whether the first step sees the
-        outputs of the initialization, or zeros."""
+    def rows(
+        self, steps: int, passes_start_values: bool, parameters: ParameterValues | None = None
+    ) -> list[list[float]]:
+        """Values of the outputs after each step; `passes_start_values` says whether the first step sees the outputs of
+        the initialization, or zeros. Without `parameters` the units start by themselves as their package says."""
         rows = []
+        wires = self.structure.inner_connections
+        plant, controller = (self.structure.element(kind) for kind in ("Plant", "Controller"))
         with TemporaryDirectory() as folder, ZipFile(self.package) as archive:
-            units = {name: Fmu(Path(archive.extract(source, folder))) for name, source in self.sources.items()}
-            for name, unit in units.items():
-                unit.initialize(self.parameters[name])
-            pending = []
-            for element, connector, target, target_connector in self.connections:
-                value = units[element].get(connector) if passes_start_values else 0.0
-                pending.append((target, target_connector, value))
+            units = {name: Fmu(Path(archive.extract(path, folder))) for name, path in self.structure.sources.items()}
+
+            def passed(to: str) -> dict[str, Value]:
+                return {name: units[element].get(output) for element, output, target, name in wires if target == to}
+
+            own = parameters or {}
+            units[plant].initialize(own.get(plant))
+            # The controller's first estimate may follow from its inputs at the start.
+            units[controller].initialize(own.get(controller, {}) | (passed(controller) if passes_start_values else {}))
+            pending = {name: passed(name) for name in units}
+            if not passes_start_values:
+                pending = {name: dict.fromkeys(values, 0.0) for name, values in pending.items()}
             for step in range(steps):
-                for target, connector, value in pending:
-                    units[target].set({connector: value})
-                for unit in units.values():
+                for name, unit in units.items():
+                    unit.set(pending[name])
                     unit.step(step * self.step_size, self.step_size)
-                pending = [
-                    (target, target_connector, units[element].get(connector))
-                    for element, connector, target, target_connector in self.connections
-                ]
+                pending = {name: passed(name) for name in units}
                 rows.append([units[element].get(connector) for element, connector in self.outputs])
             for unit in units.values():
                 unit.close()
         return rows
 
-    def compare(self, rows: list[list[float]], passes_start_values: bool = True) -> str:
+    def compare(
+        self, rows: list[list[float]], passes_start_values: bool = True, parameters: ParameterValues | None = None
+    ) -> str:
+        """A program's `rows` beside those of the loop."""
         names = [f"{element}.{connector}" for element, connector in self.outputs]
-        return compare(names, rows, self.rows(len(rows), passes_start_values))
+        return compare(names, rows, self.rows(len(rows), passes_start_values, parameters))
 
-
-def value_of(parameter: object) -> Value:
-    """A parameter's value, which fmpy keeps as text; of an enumeration, the item's name."""
-    if parameter.type == "Enumeration":
-        return parameter.value
-    if parameter.type == "Boolean":
-        return parameter.value == "true"
-    return int(parameter.value) if parameter.type == "Integer" else float(parameter.value)
+    def judge(
+        self, rows: list[list[float]], passes_start_values: bool = True, parameters: ParameterValues | None = None
+    ) -> str:
+        """As `compare` at the beginning, and the physics have to be right all along."""
+        check_physics(self.package, {name: [row[i] for row in rows] for i, name in enumerate(self.outputs)})
+        return self.compare(rows[:COMPARED_STEPS], passes_start_values, parameters)
 
 
 def check_schemas(package: Path) -> str:
-    import fmpy.ssp
+    """With the schemas of the version that the package claims."""
+    if SystemStructure(package).version == "2.0":
+        import pyssp_standard
 
-    folder = Path(fmpy.ssp.__file__).parent / "schema"
-    files = {STRUCTURE: "SystemStructureDescription.xsd"}
+        folder = Path(pyssp_standard.__file__).parent / "resources" / "ssp2"
+    else:
+        import fmpy.ssp
+
+        folder = Path(fmpy.ssp.__file__).parent / "schema"
     with ZipFile(package) as archive:
         sets = [name for name in archive.namelist() if name.endswith(".ssv")]
     assert len(sets) == 2
+    files = {STRUCTURE: "SystemStructureDescription.xsd"}
     files |= {name: "SystemStructureParameterValues.xsd" for name in sets}
     for member, schema in files.items():
         assert (errors := schema_errors(package, member, folder / schema)) == [], errors
     return "valid"
 
 
+def read_with_pyssp(package: Path) -> str:
+    """A reader with its own typed model of the XML; it has to find the same elements, connectors and wires."""
+    from pyssp_standard.ssp import SSP
+
+    structure = SystemStructure(package)
+    with SSP(package, mode="r") as read, read.system_structure as description:
+        system = description.system
+        components = {element.name: element for element in system.elements}
+        assert set(components) == set(structure.sources)
+        connectors = {(None, connector.name) for connector in system.connectors}
+        connectors |= {(name, connector.name) for name, element in components.items() for connector in element.connectors}
+        assert connectors == structure.connectors
+        assert len(system.connections) == len(structure.connections)
+    return "read"
+
+
 def simulate_with_fmpy(package: Path) -> str:
-    """fmpy applies a parameter set only if it is handed one, with the components' names in front."""
+    """As anybody calls it: fmpy applies a parameter set only if it is handed one."""
+    return _fmpy(package, None)
+
+
+def simulate_with_fmpy_and_parameters(package: Path) -> str:
+    """With the sets that the package binds, for fmpy with the components' names in front."""
+    return _fmpy(package, SystemStructure(package).parameters)
+
+
+def _fmpy(package: Path, parameters: ParameterValues | None) -> str:
     from fmpy.ssp.simulation import simulate_ssp
     from fmpy.ssp.ssd import Parameter, ParameterSet
 
     loop = PlainLoop(package)
-    parameters = [
+    options = {}
+    if parameters is not None:
         # Truth values as such: fmpy takes the text "false" for true.
-        Parameter(name=f"{element}.{name}", value=value)
-        for element, values in loop.parameters.items()
-        for name, value in values.items()
-    ]
-    stop_time = (STEPS - 0.5) * loop.step_size
-    result = simulate_ssp(
-        str(package), stop_time=stop_time, step_size=loop.step_size, parameter_set=ParameterSet(parameters=parameters)
-    )
+        options["parameter_set"] = ParameterSet(
+            parameters=[
+                Parameter(name=f"{element}.{name}", value=value)
+                for element, values in parameters.items()
+                for name, value in values.items()
+            ]
+        )
+    stop_time = (loop.steps - 0.5) * loop.step_size
+    result = simulate_ssp(str(package), stop_time=stop_time, step_size=loop.step_size, **options)
     rows = [[float(row[f"{element}.{connector}"]) for element, connector in loop.outputs] for row in result]
-    assert len(rows) == STEPS
-    return loop.compare(rows, passes_start_values=False)
+    assert len(rows) == loop.steps
+    return loop.judge(rows, passes_start_values=False, parameters=parameters)
+
+
+def simulate_with_fmpy_by_default(package: Path) -> str:
+    """Without a step size fmpy takes a hundredth of the stop time, whatever the package says."""
+    from fmpy.ssp.simulation import simulate_ssp
+
+    simulate_ssp(str(package))
+    return "exact"
 
 
 def simulate_with_ecos(package: Path) -> str:
@@ -137,10 +169,10 @@ def simulate_with_ecos(package: Path) -> str:
     rows = []
     with EcosSimulation(ssp_path=str(package), step_size=loop.step_size) as simulation:
         assert simulation.init(parameter_set=package.stem)
-        for _ in range(STEPS):
+        for _ in range(loop.steps):
             simulation.step()
             rows.append([simulation.get_real(f"{element}::{connector}") for element, connector in loop.outputs])
-    return loop.compare(rows)
+    return loop.judge(rows, parameters=loop.structure.parameters)
 
 
 def simulate_with_libcosim(package: Path) -> str:
@@ -154,22 +186,19 @@ def simulate_with_libcosim(package: Path) -> str:
     execution = CosimExecution.from_ssp_file(str(package))
     observer = CosimObserver.create_last_value()
     assert execution.add_observer(observer)
-    infos = execution.slave_infos()
-    index = {info.name.decode(): info.index for info in infos}
-    references = {
-        (element, connector): execution_reference(package, loop.sources[element], connector)
+    index = {info.name.decode(): info.index for info in execution.slave_infos()}
+    references = [
+        (index[element], [reference_of(package, loop.structure.sources[element], connector)])
         for element, connector in loop.outputs
-    }
+    ]
     rows = []
-    for _ in range(STEPS):
+    for _ in range(loop.steps):
         assert execution.step()
-        rows.append(
-            [observer.last_real_values(index[element], [reference])[0] for (element, _), reference in references.items()]
-        )
-    return loop.compare(rows)
+        rows.append([observer.last_real_values(slave, reference)[0] for slave, reference in references])
+    return loop.judge(rows, parameters=loop.structure.parameters)
 
 
-def execution_reference(package: Path, source: str, name: str) -> int:
+def reference_of(package: Path, source: str, name: str) -> int:
     """Value reference of a variable of an FMU in a package."""
     from fmpy import read_model_description
 
@@ -178,9 +207,36 @@ def execution_reference(package: Path, source: str, name: str) -> int:
     return next(variable.valueReference for variable in variables if variable.name == name)
 
 
+CLOSED, DRIVEN, TWO = "*.ssp", "driven/*.ssp", "ssp2/*.ssp"
+FORMS = {CLOSED: "1.0", DRIVEN: "1.0, driven", TWO: "2.0"}
+
 TASKS = [
-    Task("lxml", "XML schemas", check_schemas),
-    Task("FMPy", "simulate", simulate_with_fmpy),
-    Task("ecospy", "simulate", simulate_with_ecos),
-    Task("libcosimpy", "simulate", simulate_with_libcosim),
+    *(
+        Task("lxml", "XML schemas", check_schemas, packages=edition)
+        for edition in FORMS
+    ),
+    *(
+        Task("pyssp_standard", "read", read_with_pyssp, packages=edition)
+        for edition in FORMS
+    ),
+    *(
+        Task("FMPy", what, run, packages=edition)
+        for edition in (CLOSED, DRIVEN)
+        for what, run in [
+            ("simulate", simulate_with_fmpy),
+            ("simulate with parameters", simulate_with_fmpy_and_parameters),
+        ]
+    ),
+    Task(
+        "FMPy",
+        "simulate, no step size",
+        simulate_with_fmpy_by_default,
+        packages=CLOSED,
+        limit=Limit("fmi2DoStep failed", "takes a hundredth of the stop time, 10 ms, for the step, which the units refuse"),
+    ),
+    Task("ecospy", "simulate", simulate_with_ecos, packages=CLOSED),
+    Task("ecospy", "simulate", simulate_with_ecos, packages=DRIVEN, limit=Limit("No element named: ", "systems with connectors of their own")),
+    Task("ecospy", "simulate", simulate_with_ecos, packages=TWO, limit=Limit("Unsupported SSP version", "SSP 2.0")),
+    Task("libcosimpy", "simulate", simulate_with_libcosim, packages=CLOSED),
+    Task("libcosimpy", "simulate", simulate_with_libcosim, packages=DRIVEN, limit=Limit("Unable to create execution from path", "systems with connectors of their own")),
 ]

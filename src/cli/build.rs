@@ -7,12 +7,12 @@ use clap::Args;
 use maglev_fmu::package::{self, GenerationTime, Library, ParameterFile};
 use maglev_fmu::unit::{Description, StartValues};
 
-use super::{report, say};
+use super::output::{report, say};
 
-/// Pack all units for FMI 2.0 and FMI 3.0
+/// Pack all units for FMI 2.0 and FMI 3.0, controllers of FMI 3.0 also with clocks
 #[derive(Debug, Args)]
 pub struct Build {
-    /// Directory for the packages, which go to its subdirectories fmi2 and fmi3
+    /// Directory for the packages, which go to its subdirectories fmi2, fmi3 and fmi3-clocked
     #[arg(long, value_name = "DIR", default_value = "dist")]
     out: PathBuf,
     /// Shared library to pack instead of the one that was built with this program; may be given once per platform
@@ -42,11 +42,15 @@ impl Build {
             paths => Library::read_all(paths)?,
         };
         let time = GenerationTime::of_this_build()?;
+        let written = package::build_with(&self.out, &start_values, &libraries, time)?;
         for library in &libraries {
-            say(format_args!("{} for {}, source as of {time}", library.path().display(), library.platform()));
+            say(format_args!(
+                "{} for {}, source as of {time}",
+                library.path().display(),
+                library.platform()
+            ))?;
         }
-        package::build_with(&self.out, &start_values, &libraries, time)?.iter().for_each(report);
-        Ok(())
+        Ok(written.iter().try_for_each(report)?)
     }
 
     fn start_values(&self) -> Result<Vec<(&'static Description, StartValues)>, Box<dyn Error>> {

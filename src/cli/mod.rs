@@ -2,21 +2,25 @@
 
 mod build;
 mod describe;
+mod ending;
+mod output;
 mod reproduce;
 mod trace;
 mod tune;
 
 use std::error::Error;
-use std::fmt;
 use std::io::{self, Write};
+use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use maglev_fmu::package::WrittenFile;
 use maglev_fmu::study::EXPERIMENTS;
+
+use output::OutputError;
 
 /// Magnetic levitation and magnetic bearings as FMI 2.0 and FMI 3.0 units.
 ///
 /// Without a command: builds the units into dist, reproduces everything into results and prints the verdicts.
+/// Ends with status 0, 1 after an error, and 141, quietly, when the reader of standard output has closed the pipe.
 #[derive(Debug, Parser)]
 #[command(version)]
 pub struct CommandLine {
@@ -33,9 +37,26 @@ enum Command {
     Tune(tune::Tune),
 }
 
+/// Does what was asked for. The exit status is 0, 1 after an error, 2 for a wrong command line, and 141 if standard output
+/// is a pipe that was closed.
+pub fn main() -> ExitCode {
+    match CommandLine::try_parse() {
+        Ok(command_line) => ending::status(command_line.run()),
+        Err(answer) => match print(&answer) {
+            Err(error) if !answer.use_stderr() => ending::status(Err(error.into())),
+            _ => ExitCode::from(u8::try_from(answer.exit_code()).unwrap_or(1)),
+        },
+    }
+}
+
+/// Help, the version, or what is wrong with the command line.
+fn print(answer: &clap::Error) -> Result<(), OutputError> {
+    answer.print()?;
+    Ok(io::stdout().flush()?)
+}
+
 impl CommandLine {
-    /// Does what was asked for.
-    pub fn run(self) -> Result<(), Box<dyn Error>> {
+    fn run(self) -> Result<(), Box<dyn Error>> {
         match self.command {
             None => {
                 let build = build::Build::default();
@@ -44,19 +65,9 @@ impl CommandLine {
             }
             Some(Command::Build(command)) => command.run(),
             Some(Command::Reproduce(command)) => command.run(),
-            Some(Command::Describe(command)) => Ok(command.run()?),
+            Some(Command::Describe(command)) => command.run(),
             Some(Command::Trace(command)) => command.run(),
             Some(Command::Tune(command)) => command.run(),
         }
     }
-}
-
-/// Tells the user about a file.
-fn report(WrittenFile { path, size }: &WrittenFile) {
-    say(format_args!("{:>9.1} kB  {}", *size as f64 / 1e3, path.display()));
-}
-
-/// Prints a line. A reader that has seen enough, such as `head`, is no reason to fail.
-fn say(line: fmt::Arguments<'_>) {
-    let _ = writeln!(io::stdout(), "{line}");
 }

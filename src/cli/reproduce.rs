@@ -9,7 +9,7 @@ use maglev_fmu::package::{self, GenerationTime, Library};
 use maglev_fmu::study::report::quantity;
 use maglev_fmu::study::{EXPERIMENTS, Experiment, Findings, output};
 
-use super::say;
+use super::output::{OutputError, say};
 
 /// Where results go unless told otherwise.
 pub const RESULTS: &str = "results";
@@ -63,18 +63,18 @@ pub fn reproduce<'a>(
     bar.set_message("drawing");
     let report = output::write(out, &findings)?;
     bar.finish_and_clear();
-    findings.iter().for_each(print_verdicts);
-    say(format_args!("\nReport with figures: {}", report.display()));
-    Ok(())
+    findings.iter().try_for_each(print_verdicts)?;
+    Ok(say(format_args!("\nReport with figures: {}", report.display()))?)
 }
 
 /// One line per claim: verdict, decisive number, statement.
-fn print_verdicts(findings: &Findings) {
-    say(format_args!("\n{}\n", findings.title));
+fn print_verdicts(findings: &Findings) -> Result<(), OutputError> {
+    say(format_args!("\n{}\n", findings.title))?;
     for claim in &findings.claims {
-        say(format_args!("{:<16} {}", claim.verdict.text(), claim.statement));
+        say(format_args!("{:<16} {}", claim.verdict.text(), claim.statement))?;
         if let Some(decisive) = claim.measured.first() {
-            say(format_args!("{:<16}   {}: {}", "", decisive.what, quantity(decisive.value, decisive.unit)));
+            say(format_args!("{:<16}   {}: {}", "", decisive.what, quantity(decisive.value, decisive.unit)))?;
         }
     }
+    Ok(())
 }

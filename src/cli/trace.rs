@@ -7,7 +7,7 @@ use maglev_fmu::unit::system::{SYSTEMS, System};
 use maglev_fmu::unit::variable::{Causality, Kind, Variable};
 use maglev_fmu::unit::{Silence, Unit};
 
-use super::say;
+use super::output::Lines;
 
 /// Run a system without FMI and print every bit, to compare an importer with
 ///
@@ -20,7 +20,7 @@ pub struct Trace {
     #[arg(long, value_name = "N", default_value_t = 1000)]
     steps: u32,
     /// Communication step in s; the controller's sample time if not given
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", value_parser = seconds)]
     step_size: Option<f64>,
     /// Parameter or input of the plant, with an enumeration's item by name; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
@@ -37,6 +37,13 @@ fn system(name: &str) -> Result<&'static System, String> {
     })
 }
 
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(value) if f64::is_finite(value) && value > 0.0 => Ok(value),
+        _ => Err("expected a finite number greater than 0 of s".to_owned()),
+    }
+}
+
 impl Trace {
     pub fn run(&self) -> Result<(), Box<dyn Error>> {
         let (mut plant, mut controller) = ((self.system.plant.create)(), (self.system.controller.create)());
@@ -46,10 +53,11 @@ impl Trace {
         controller.initialise(0.0)?;
         let step_size = self.step_size.unwrap_or_else(|| *value(&mut *controller, "sample_time"));
         let (plant_outputs, controller_outputs) = (real_outputs(&*plant), real_outputs(&*controller));
-        say(format_args!(
+        let mut lines = Lines::new();
+        lines.say(format_args!(
             "{}",
             [header("plant", &plant_outputs), header("controller", &controller_outputs)].join(",")
-        ));
+        ))?;
         for _ in 0..self.steps {
             let mut row = bits(&*plant, &plant_outputs);
             pass_on(&mut *plant, &mut *controller, self.system.sensing);
@@ -57,9 +65,9 @@ impl Trace {
             row.extend(bits(&*controller, &controller_outputs));
             pass_on(&mut *controller, &mut *plant, self.system.actuation);
             plant.advance(step_size, &mut Silence)?;
-            say(format_args!("{}", row.join(",")));
+            lines.say(format_args!("{}", row.join(",")))?;
         }
-        Ok(())
+        Ok(lines.finish()?)
     }
 }
 

@@ -15,7 +15,7 @@ use maglev_fmu::study::tuning::{Objective, Tuned, convergence, noise_aware, tune
 use maglev_fmu::unit::system::RIG;
 use serde_json::json;
 
-use super::{report, say};
+use super::output::{report, say};
 
 /// Tune an observer of the maglev rig by particle swarm and write a parameter file
 ///
@@ -129,6 +129,8 @@ impl Tune {
         let title = format!("rig-{}-{}", name(&self.observer), name(&self.objective));
         let path =
             self.out.clone().unwrap_or_else(|| PathBuf::from("results").join(&title).with_extension("json"));
+        // Fewer than asked for if the swarm has diverged; the first of the history is the swarm as it was strewn.
+        let iterations = tuned.optimum.history.len().saturating_sub(1);
         let mut provenance = json!({
             "program": concat!("maglev-fmu ", env!("CARGO_PKG_VERSION")),
             "observer": name(&self.observer),
@@ -137,7 +139,7 @@ impl Tune {
             "cost of the printed parameters": tuned.printed_cost,
             "swarm": name(&self.swarm),
             "particles": settings.particles,
-            "iterations": settings.iterations,
+            "iterations": iterations,
             "evaluations": tuned.optimum.evaluations,
             "seed": settings.seed,
         });
@@ -158,19 +160,27 @@ impl Tune {
         );
         output::write_figure(directory, &figure)?;
 
+        let written = file.write(&path)?;
+
+        if tuned.optimum.has_diverged {
+            say(format_args!(
+                "The swarm has diverged: after {iterations} of {} iterations its positions are no numbers any more. What \
+                 follows is the best it found before.",
+                settings.iterations
+            ))?;
+        }
         say(format_args!(
             "{}: {}, printed parameters {}",
             objective.name(),
             quantity(tuned.optimum.cost, "1"),
             quantity(tuned.printed_cost, "1")
-        ));
+        ))?;
         for (name, value) in &file.values {
             let unit = file.units.get(name).and_then(|unit| unit.as_str()).unwrap_or_default();
-            say(format_args!("  {name} = {value} ({unit})"));
+            say(format_args!("  {name} = {value} ({unit})"))?;
         }
-        report(&file.write(&path)?);
-        say(format_args!("           {}", directory.join(&stem).with_extension("png").display()));
-        Ok(())
+        report(&written)?;
+        Ok(say(format_args!("           {}", directory.join(&stem).with_extension("png").display()))?)
     }
 }
 

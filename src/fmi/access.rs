@@ -1,6 +1,8 @@
 //! Reading and writing variables by value reference.
 
+use super::floating_point::in_default_environment;
 use super::{CallError, FmiVersion, Instance, Phase};
+use crate::unit::LARGEST_TABLE;
 use crate::unit::variable::{Causality, Kind, Variability, Variable};
 
 /// A data type of a standard: its name there and the kinds of variables it carries.
@@ -10,6 +12,8 @@ pub(super) struct DataType {
     pub standard: FmiVersion,
 }
 
+/// Where both sides hold `f64`, reading and writing copies and compares bits, and computes nothing by itself: see
+/// [`super::boundary::enter_to_copy`].
 impl Instance {
     /// Copies the values of variables of one data type to `values`.
     #[inline]
@@ -49,18 +53,39 @@ impl Instance {
             variable.check(convert(*value))?;
             parameters_changed |= variable.causality == Causality::Parameter;
         }
+        let is_before_first_step = matches!(self.phase, Phase::Instantiated | Phase::InitializationMode);
+        if parameters_changed && !is_before_first_step {
+            return self.tune(references.iter().zip(values).map(|(row, value)| (*row, convert(*value))));
+        }
         let target = self.unit.values_mut();
         for (reference, value) in references.iter().zip(values) {
             target[*reference as usize] = convert(*value);
         }
-        if matches!(self.phase, Phase::Instantiated | Phase::InitializationMode) {
+        if is_before_first_step {
             self.is_stale = true;
-            return Ok(());
+        } else {
+            self.needs_evaluation = true;
+        }
+        Ok(())
+    }
+
+    /// Gives checked values to tunable parameters and perhaps inputs; all or, when the parameters do not fit together,
+    /// none.
+    fn tune(&mut self, assignments: impl Iterator<Item = (u32, f64)>) -> Result<(), CallError> {
+        let mut before = [0.0; LARGEST_TABLE];
+        let values = self.unit.values_mut();
+        let before = &mut before[..values.len()];
+        before.copy_from_slice(values);
+        for (reference, value) in assignments {
+            values[reference as usize] = value;
+        }
+        let unit = &mut self.unit;
+        let fit = in_default_environment(|| unit.check_parameters().map(|()| unit.adopt_parameters()));
+        if let Err(error) = fit {
+            unit.values_mut().copy_from_slice(before);
+            return Err(error.into());
         }
         self.needs_evaluation = true;
-        if parameters_changed {
-            self.unit.adopt_parameters();
-        }
         Ok(())
     }
 
@@ -79,15 +104,14 @@ impl Instance {
         if data_type.standard == FmiVersion::Two {
             return CallError::UnknownReference { reference, largest: self.variables.len() - 1 };
         }
-        let mut clocks = self.unit.description().clocks();
-        match clocks.find(|(known, _)| *known == reference as usize) {
+        match self.clocks().find(|(known, _)| *known == reference as usize) {
             Some((_, clock)) => CallError::IsClock { name: clock.name, reference, asked: data_type.name },
             None => self.unknown_reference(reference),
         }
     }
 
     pub(super) fn unknown_reference(&self, reference: u32) -> CallError {
-        let clocks = self.unit.description().clocks().count();
+        let clocks = self.clocks().count();
         CallError::UnknownReference { reference, largest: self.variables.len() + clocks - 1 }
     }
 

@@ -24,12 +24,38 @@ pub(super) unsafe fn enter(
     function: &Function,
     body: impl FnOnce(&mut Instance) -> Result<(), CallError>,
 ) -> i32 {
+    // SAFETY: the caller's promise.
+    unsafe { run(handle, function, |instance| in_default_environment(|| body(instance))) }
+}
+
+/// As [`enter`], for a body that copies numbers and compares none, or sees to the floating-point environment itself.
+///
+/// # Safety
+/// As [`enter`].
+#[inline]
+pub(super) unsafe fn enter_to_copy(
+    handle: *mut c_void,
+    function: &Function,
+    body: impl FnOnce(&mut Instance) -> Result<(), CallError>,
+) -> i32 {
+    // SAFETY: the caller's promise.
+    unsafe { run(handle, function, body) }
+}
+
+/// # Safety
+/// As [`enter`].
+#[inline]
+unsafe fn run(
+    handle: *mut c_void,
+    function: &Function,
+    body: impl FnOnce(&mut Instance) -> Result<(), CallError>,
+) -> i32 {
     let handle = handle.cast::<Instance>();
     // SAFETY: null is handled by `as_mut`; otherwise the caller's promise.
     let Some(instance) = (unsafe { handle.as_mut() }) else {
         return Status::Error as i32;
     };
-    let status = guarded(|| {
+    let status = catch_unwind(AssertUnwindSafe(|| {
         let outcome = match instance.require(function) {
             Ok(()) => body(instance),
             Err(error) => Err(error),
@@ -38,10 +64,10 @@ pub(super) unsafe fn enter(
             Ok(()) => Status::Ok,
             Err(error) => refuse(instance, function, &error),
         }
-    });
+    }));
     let status = match status {
-        Some(status) => status,
-        None => lose(instance, function),
+        Ok(status) => status,
+        Err(_) => lose(instance, function),
     };
     if !instance.logger.outbox.is_empty() {
         // SAFETY: a live instance; the reference above is not used again.
@@ -53,7 +79,8 @@ pub(super) unsafe fn enter(
 #[cold]
 fn refuse(instance: &mut Instance, function: &Function, error: &CallError) -> Status {
     let status = error.status();
-    instance.logger.refusal(status, format_args!("{}: {error}", function.name));
+    // Numbers are compared and rounded to be written.
+    in_default_environment(|| instance.logger.refusal(status, format_args!("{}: {error}", function.name)));
     status
 }
 
@@ -69,7 +96,7 @@ fn lose(instance: &mut Instance, function: &Function) -> Status {
 /// Result of `body`, which computes in the default floating-point environment; `None` if it panicked.
 #[inline]
 fn guarded<R>(body: impl FnOnce() -> R) -> Option<R> {
-    in_default_environment(|| catch_unwind(AssertUnwindSafe(body)).ok())
+    catch_unwind(AssertUnwindSafe(|| in_default_environment(body))).ok()
 }
 
 /// Sends what an instance has to say. What the importer leaves unread by not coming back follows the next call.
@@ -92,6 +119,7 @@ unsafe fn deliver(handle: *mut Instance) {
 ///
 /// # Safety
 /// The importer vouches for its callback.
+#[allow(clippy::result_large_err, reason = "messages lie on the stack, for there may be no heap left")]
 pub(super) unsafe fn create(
     request: &Request<'_>,
     configure: impl FnOnce(&mut Instance) -> Result<(), CallError>,

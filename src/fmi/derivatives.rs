@@ -19,11 +19,11 @@ impl Instance {
         sensitivity: &mut [f64],
     ) -> Result<(), CallError> {
         let unit = Differentiated::new(self, unknowns, knowns)?;
-        for (result, unknown) in sensitivity.iter_mut().zip(unknowns) {
+        let along_seed = |unknown: u32| {
             let terms = knowns.iter().zip(seed);
-            *result = terms.map(|(known, seed)| unit.partial(*unknown, *known) * seed).sum();
-        }
-        Ok(())
+            terms.map(|(known, seed)| unit.partial(unknown, *known) * seed).sum()
+        };
+        fill(unknowns, sensitivity, along_seed, "the derivative along the seed of", unit.variables)
     }
 
     /// Sensitivity of the unknowns, weighted with `seed`, to each known.
@@ -35,11 +35,11 @@ impl Instance {
         sensitivity: &mut [f64],
     ) -> Result<(), CallError> {
         let unit = Differentiated::new(self, unknowns, knowns)?;
-        for (result, known) in sensitivity.iter_mut().zip(knowns) {
+        let along_seed = |known: u32| {
             let terms = unknowns.iter().zip(seed);
-            *result = terms.map(|(unknown, seed)| unit.partial(*unknown, *known) * seed).sum();
-        }
-        Ok(())
+            terms.map(|(unknown, seed)| unit.partial(*unknown, known) * seed).sum()
+        };
+        fill(knowns, sensitivity, along_seed, "the derivative of the weighted unknowns by", unit.variables)
     }
 
     /// First derivatives of outputs with respect to time at the end of the last step; 0 for outputs that are held.
@@ -58,12 +58,10 @@ impl Instance {
             require_first_order(variable, *order)?;
         }
         self.evaluate();
-        let rows = self.rows;
+        let (rows, variables) = (self.rows, self.variables);
         let unit = self.unit.continuous().ok_or(HELD)?;
-        for (derivative, reference) in derivatives.iter_mut().zip(references) {
-            *derivative = unit.output_slope(*reference as usize, &rows);
-        }
-        Ok(())
+        let slope = |output: u32| unit.output_slope(output as usize, &rows);
+        fill(references, derivatives, slope, "the derivative with respect to time of", variables)
     }
 
     /// First derivatives of inputs with respect to time, from the begin of the next step on.
@@ -135,6 +133,7 @@ impl Instance {
 /// A unit whose unknowns and knowns have been checked.
 struct Differentiated<'a> {
     unit: &'a dyn ContinuousUnit,
+    variables: &'static [Variable],
     is_initialising: bool,
 }
 
@@ -157,8 +156,8 @@ impl<'a> Differentiated<'a> {
         }
         instance.refresh_before_first_step()?;
         instance.evaluate();
-        let is_initialising = instance.is_initialising();
-        Ok(Self { unit: instance.unit.continuous().ok_or(HELD)?, is_initialising })
+        let (is_initialising, variables) = (instance.is_initialising(), instance.variables);
+        Ok(Self { unit: instance.unit.continuous().ok_or(HELD)?, variables, is_initialising })
     }
 
     fn partial(&self, unknown: u32, known: u32) -> f64 {
@@ -169,6 +168,26 @@ impl<'a> Differentiated<'a> {
             self.unit.partial_derivative(unknown, known)
         }
     }
+}
+
+/// Writes the `derivative` of each of `references`, which the caller has checked; all of them or, if one is not finite, none.
+fn fill(
+    references: &[u32],
+    target: &mut [f64],
+    derivative: impl Fn(u32) -> f64,
+    what: &'static str,
+    variables: &[Variable],
+) -> Result<(), CallError> {
+    for reference in references {
+        let value = derivative(*reference);
+        if !value.is_finite() {
+            return Err(CallError::NoDerivative { what, name: variables[*reference as usize].name, value });
+        }
+    }
+    for (target, reference) in target.iter_mut().zip(references) {
+        *target = derivative(*reference);
+    }
+    Ok(())
 }
 
 fn require_first_order(variable: &Variable, order: i32) -> Result<(), CallError> {

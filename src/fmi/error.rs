@@ -59,6 +59,8 @@ pub enum CallError {
     WrongInterface(&'static str),
     #[error("{name} cannot be computed here: {value} {unit}")]
     NotComputable { name: &'static str, value: f64, unit: &'static str },
+    #[error("{what} {name} cannot be computed here: {value}")]
+    NoDerivative { what: &'static str, name: &'static str, value: f64 },
     #[error("{name} (value reference {reference}) is {is}: expected {expected}")]
     WrongRole { name: &'static str, reference: u32, is: &'static str, expected: &'static str },
     #[error("order {order} of the derivative of {name}: expected 1")]
@@ -81,7 +83,9 @@ impl CallError {
             // section 4.2.3.
             Self::NoSuchStatus(_) => Status::Discard,
             // The solver may try a shorter step: FMI 3.0.2, section 3.2.1 (fmi3SetContinuousStates and the getters).
-            Self::StateRejected(_) | Self::NotComputable { .. } => Status::Discard,
+            Self::StateRejected(_) | Self::NotComputable { .. } | Self::NoDerivative { .. } => {
+                Status::Discard
+            }
             _ => Status::Error,
         }
     }

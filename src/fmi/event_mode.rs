@@ -1,5 +1,6 @@
 //! Event mode, which model exchange and co-simulation share.
 
+use super::model_exchange::EarliestTime;
 use super::ticking::sampled;
 use super::{CallError, Instance, Interface, Phase};
 
@@ -16,22 +17,21 @@ pub(super) struct EventEnd {
 impl Instance {
     pub(super) fn enter_event_mode(&mut self) -> Result<(), CallError> {
         match self.interface {
-            Interface::ModelExchange => self.enter_event_of_integration()?,
-            Interface::CoSimulationWithEvents { .. } => {}
+            Interface::ModelExchange | Interface::CoSimulationWithEvents { .. } => {}
             Interface::CoSimulation | Interface::ScheduledExecution => {
                 return Err(CallError::NotOffered("event mode, which the instance was not made for"));
             }
         }
+        self.earliest_time = EarliestTime::at_event(self.communication.now());
         self.phase = Phase::EventMode;
         Ok(())
     }
 
-    /// Discrete transitions. Those of model exchange are settled by one call, and there are no time events. In
+    /// Discrete transitions. Those of model exchange are settled by one call; its time events are readings of a sensor. In
     /// co-simulation the tick is run whose clock is active, and another iteration shows its results.
     pub(super) fn update_discrete_states(&mut self) -> Result<EventEnd, CallError> {
         if self.interface == Interface::ModelExchange {
-            let have_states_changed = self.update_states_of_integration()?;
-            return Ok(EventEnd { is_unfinished: false, have_states_changed, next_event_time: None });
+            return self.update_states_of_integration();
         }
         let is_active = core::mem::take(&mut self.clocks.is_tick_active);
         if is_active {

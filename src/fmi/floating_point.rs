@@ -5,27 +5,37 @@
 //! same bits come out in every host. Both standards allow to change the control word of the thread as long as it is
 //! restored before a function returns and before it calls back (FMI 2.0.5, section 2.1; FMI 3.0.2, section 2.2.1).
 //!
-//! The sticky flags are restored along with it: the host, asking later which exceptions its own computations raised,
-//! hears of no others ("clear the floating point status word before return", FMI 2.0.5).
+//! The sticky flags are restored along with it: a host with an environment of its own, asking later which exceptions its
+//! computations raised, hears of no others ("clear the floating point status word before return", FMI 2.0.5). In the
+//! default environment flags stay raised, as they do after any function of a mathematical library.
+//!
+//! Reading the word takes longer than getting or setting a variable. Calls that only copy numbers therefore compute
+//! nothing, not even a comparison of them, and leave the word alone.
 
 use core::hint::black_box;
 
+/// The host's word, in force again when this is dropped.
+struct Host(word::Word);
+
+impl Drop for Host {
+    #[inline]
+    fn drop(&mut self) {
+        if !word::is_default(self.0) {
+            word::write(self.0);
+        }
+    }
+}
+
 /// Runs `body` in the default environment, and gives the host its own one back.
-///
-/// `body` must not unwind, or the environment would stay ours.
 #[inline]
 pub(super) fn in_default_environment<R>(body: impl FnOnce() -> R) -> R {
-    let host = word::read();
-    if !word::is_default(host) {
+    let host = Host(word::read());
+    if !word::is_default(host.0) {
         word::write(word::DEFAULT);
     }
     // The compiler knows nothing of the word and might compute with the arguments, or with constants, before it is
     // set; what it has to read from memory that somebody may have changed is not known earlier.
-    let result = black_box(body)();
-    if word::read() != host {
-        word::write(host);
-    }
-    result
+    black_box(body)()
 }
 
 /// MXCSR. The older x87 unit with its own word is used by nobody on this architecture.

@@ -2,14 +2,16 @@
 
 use core::fmt;
 
+use super::floating_point::in_default_environment;
 use super::fmi3::types::{fmi3ClockUpdateCallback, fmi3InstanceEnvironment};
 use super::intermediate_update::{IntermediateUpdate, StepInProgress};
 use super::model_exchange::EarliestTime;
 use super::saved_state::Life;
 use super::ticking::ClockStates;
 use super::{CallError, CommunicationPoint, Function, Interface, Logger, Phase, SavedState, StateError};
+use crate::unit::sampled::ClockVariable;
 use crate::unit::variable::Variable;
-use crate::unit::{ContinuousRows, Journal, TIME, Topic, Unit};
+use crate::unit::{ContinuousRows, Edition, Journal, Solver, TIME, Topic, Unit};
 
 /// What a handle (`fmi2Component`, `fmi3Instance`) points to.
 pub struct Instance {
@@ -17,6 +19,8 @@ pub struct Instance {
     /// As made, for reset.
     pub(super) start: SavedState,
     pub(super) variables: &'static [Variable],
+    /// What the importer has read of the unit.
+    pub(super) edition: Edition,
     /// Where the table holds what moves in continuous time.
     pub(super) rows: ContinuousRows,
     pub(super) interface: Interface,
@@ -40,14 +44,16 @@ pub struct Instance {
 }
 
 impl Instance {
-    /// An instance of any unit, not only of those the library knows by token.
-    pub fn new(unit: Box<dyn Unit>, interface: Interface, logger: Logger) -> Result<Self, StateError> {
+    /// An instance of any unit, not only of those the library knows by token, in its plain edition.
+    pub fn new(mut unit: Box<dyn Unit>, interface: Interface, logger: Logger) -> Result<Self, StateError> {
+        say_who_solves(&mut *unit, interface);
         let description = unit.description();
         let mut instance = Self {
             start: SavedState::new(description),
             variables: description.variables,
             rows: ContinuousRows::of(description),
             unit,
+            edition: Edition::Plain,
             interface,
             phase: Phase::Instantiated,
             logger,
@@ -108,7 +114,7 @@ impl Instance {
     /// Computes all calculated values if something changed since the last time.
     pub(super) fn refresh(&mut self) -> Result<(), CallError> {
         if self.is_stale {
-            self.unit.initialise(self.start_time)?;
+            in_default_environment(|| self.unit.initialise(self.start_time))?;
             self.is_stale = false;
         }
         Ok(())
@@ -119,13 +125,14 @@ impl Instance {
     pub(super) fn evaluate(&mut self) {
         if self.needs_evaluation {
             if let Some(unit) = self.unit.continuous() {
-                unit.evaluate();
+                in_default_environment(|| unit.evaluate());
             }
             self.needs_evaluation = false;
         }
     }
 
     pub(super) fn exit_initialization_mode(&mut self) -> Result<(), CallError> {
+        self.unit.check_parameters()?;
         self.is_stale = true;
         self.refresh()?;
         self.phase = self.interface.first_phase();
@@ -158,6 +165,11 @@ impl Instance {
         Ok(())
     }
 
+    /// Clocks that the importer knows of, with their value references.
+    pub(super) fn clocks(&self) -> impl Iterator<Item = (usize, &'static ClockVariable)> + use<> {
+        self.edition.clocks(self.unit.description())
+    }
+
     /// What a saved state has to tell besides the unit.
     pub(super) fn life(&self) -> Life {
         let Self {
@@ -178,9 +190,21 @@ impl Instance {
         self.needs_evaluation = needs_evaluation;
         self.clocks = clocks;
         self.step = None;
+        // The state may be that of an instance with another interface.
+        let is_new = say_who_solves(&mut *self.unit, self.interface);
+        self.is_stale |= is_new && matches!(phase, Phase::Instantiated | Phase::InitializationMode);
     }
 
     pub(super) fn note(&mut self, message: fmt::Arguments<'_>) {
         self.logger.note(Topic::Events, message);
     }
+}
+
+/// Tells the unit who solves it; whether that is new to it.
+fn say_who_solves(unit: &mut dyn Unit, interface: Interface) -> bool {
+    let solver = match interface {
+        Interface::ModelExchange => Solver::Importer,
+        _ => Solver::Unit,
+    };
+    unit.continuous().is_some_and(|unit| unit.set_solver(solver))
 }

@@ -4,10 +4,10 @@ use core::ffi::CStr;
 use core::fmt;
 
 use super::message::Message;
-use super::{CallError, Callback, Instance, Interface, Logger, StateError, Status};
+use super::{CallError, Callback, Form, Instance, Interface, Logger, StateError, Status};
 use crate::unit::memory::{OutOfMemory, try_boxed};
 use crate::unit::start_values::{StartValues, TokenError, read_token};
-use crate::unit::{Description, UnitType};
+use crate::unit::{Description, Edition, UnitType};
 use thiserror::Error;
 
 /// What an importer asks for.
@@ -29,8 +29,11 @@ enum InstantiationError<'a> {
     UnknownInterface(&'static str),
     #[error("{0}")]
     Token(TokenError<'a>),
-    #[error("{name} does not offer {asked}, only {offered}", name = .0.name, asked = .1.name(), offered = Offered(.0))]
-    OtherInterface(&'static Description, Interface),
+    #[error(
+        "{name} does not offer {asked}, only {offered}{elsewhere}",
+        name = .0.name, asked = .2.name(), offered = Offered(.0, *.1), elsewhere = Elsewhere(.0, *.2)
+    )]
+    OtherInterface(&'static Description, Edition, Interface),
     #[error(transparent)]
     Call(#[from] CallError),
     #[error(transparent)]
@@ -58,22 +61,24 @@ impl Request<'_> {
     }
 
     fn try_make(&self) -> Result<Box<Instance>, InstantiationError<'_>> {
-        let (unit, start_values, interface) = self.read()?;
+        let (unit, edition, start_values, interface) = self.read()?;
         let logger = Logger::new(self.callback, self.name.unwrap_or_default(), self.logging_on)?;
         let mut made = (unit.try_create)()?;
         start_values.apply(&mut *made);
-        Ok(try_boxed("an instance", Instance::new(made, interface, logger)?)?)
+        let mut instance = Instance::new(made, interface, logger)?;
+        instance.edition = edition;
+        Ok(try_boxed("an instance", instance)?)
     }
 
-    /// The unit, its start values and the interface type that are asked for.
-    fn read(&self) -> Result<(&'static UnitType, StartValues, Interface), InstantiationError<'_>> {
+    /// The unit, its edition and start values and the interface type that are asked for.
+    fn read(&self) -> Result<(&'static UnitType, Edition, StartValues, Interface), InstantiationError<'_>> {
         let interface = self.interface.map_err(InstantiationError::UnknownInterface)?;
         let token = self.token.unwrap_or_default().to_str().unwrap_or_default();
-        let (unit, start_values) = read_token(token).map_err(InstantiationError::Token)?;
-        if interface.is_offered_by(unit.description) {
-            Ok((unit, start_values, interface))
+        let (unit, edition, start_values) = read_token(token).map_err(InstantiationError::Token)?;
+        if interface.is_offered_by(unit.description, edition) {
+            Ok((unit, edition, start_values, interface))
         } else {
-            Err(InstantiationError::OtherInterface(unit.description, interface))
+            Err(InstantiationError::OtherInterface(unit.description, edition, interface))
         }
     }
 
@@ -88,14 +93,31 @@ impl Request<'_> {
     }
 }
 
-/// The interface types of a unit, for an error message.
-struct Offered(&'static Description);
+/// The interface types of an edition of a unit, for an error message.
+struct Offered(&'static Description, Edition);
 
 impl fmt::Display for Offered {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let offered = Interface::ALL.iter().filter(|interface| interface.is_offered_by(self.0));
+        let offered = Interface::ALL.iter().filter(|interface| interface.is_offered_by(self.0, self.1));
         offered.enumerate().try_for_each(|(index, interface)| {
             write!(formatter, "{}{}", if index == 0 { "" } else { ", " }, interface.name())
         })
+    }
+}
+
+/// Where another package of the unit offers what this one does not, for an error message; nothing if none does.
+struct Elsewhere(&'static Description, Interface);
+
+impl fmt::Display for Elsewhere {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(description, interface) = self;
+        let mut forms = Form::all_of(description);
+        match forms.find(|form| interface.is_offered_by(description, form.edition)) {
+            Some(form) => {
+                let (directory, name) = (form.directory(), description.name);
+                write!(formatter, "; its package {directory}/{name}.fmu does")
+            }
+            None => Ok(()),
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! Interface types: how an importer uses an instance.
 
 use super::Phase;
-use crate::unit::Description;
+use crate::unit::{Description, Edition};
 
 /// What an instance was made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,10 +35,12 @@ impl Interface {
         }
     }
 
-    pub fn is_offered_by(self, description: &Description) -> bool {
+    pub fn is_offered_by(self, description: &Description, edition: Edition) -> bool {
         match self {
             Self::CoSimulation => true,
-            Self::CoSimulationWithEvents { .. } | Self::ScheduledExecution => description.is_sampled(),
+            Self::CoSimulationWithEvents { .. } | Self::ScheduledExecution => {
+                description.is_sampled() && edition == Edition::Clocked
+            }
             Self::ModelExchange => description.offers_model_exchange(),
         }
     }

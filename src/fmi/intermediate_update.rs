@@ -12,7 +12,6 @@ use super::ticking::{StepEnd, sampled};
 use super::{CallError, Instance, Interface, Phase};
 use crate::unit::TIME;
 use crate::unit::sample_clock::SampleClock;
-use crate::unit::sampled::LARGEST_NUMBER_OF_TICKS;
 
 /// What the importer gave at instantiation.
 #[derive(Clone, Copy)]
@@ -90,9 +89,8 @@ impl Instance {
     ) -> Result<Progress, CallError> {
         let duration = self.communication.duration(point, step_size)?;
         let unit = sampled(&mut *self.unit)?;
-        let mut final_clock = *unit.clock();
         // Refuses what `Unit::advance` would refuse; the ticks are counted one by one below.
-        final_clock.advance_at_most(duration, LARGEST_NUMBER_OF_TICKS)?;
+        let (final_clock, _) = unit.affordable_ticks(duration)?;
         if unit.clock().until_tick_within(duration) == Some(0.0) {
             let time = unit.clock_mut().take();
             unit.tick(time, &mut self.logger);

@@ -13,7 +13,9 @@ mod event_mode;
 mod floating_point;
 pub mod fmi2;
 pub mod fmi3;
+mod form;
 mod fraction;
+mod function_names;
 mod instance;
 mod instantiation;
 mod interface;
@@ -30,6 +32,8 @@ mod version;
 
 pub use communication::CommunicationPoint;
 pub use error::CallError;
+pub use form::Form;
+pub use function_names::function_names;
 pub use instance::Instance;
 pub use interface::Interface;
 pub use log::{Callback, LOG_CATEGORIES, Logger};

@@ -2,9 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::event_mode::EventEnd;
 use super::{CallError, Instance, Interface, Phase};
 use crate::unit::continuous::nominal;
-use crate::unit::value::ValueError;
+use crate::unit::value::{ValueError, is_finite};
 use crate::unit::{ContinuousUnit, TIME};
 
 /// How far time may go back: not beyond the last event, nor beyond the completed step before the last one (FMI 2.0.5,
@@ -56,23 +57,13 @@ impl Instance {
         self.unit.continuous().ok_or(CallError::NotOffered("the unit has no continuous states"))
     }
 
-    /// Readings are taken with the inputs that the importer set last, the left limit at the event.
-    pub(super) fn enter_event_of_integration(&mut self) -> Result<(), CallError> {
-        let comes_from_continuous_time = self.phase == Phase::ContinuousTimeMode;
-        let now = self.communication.now();
+    /// Discrete transitions; one call settles them all.
+    pub(super) fn update_states_of_integration(&mut self) -> Result<EventEnd, CallError> {
         let unit = self.exchanged()?;
-        if comes_from_continuous_time {
-            unit.enter_event();
-        }
-        self.earliest_time = EarliestTime::at_event(now);
-        Ok(())
-    }
-
-    /// Discrete transitions; whether a continuous state jumped. One call settles them all.
-    pub(super) fn update_states_of_integration(&mut self) -> Result<bool, CallError> {
-        let have_states_changed = self.exchanged()?.update_discrete_states();
+        let have_states_changed = unit.update_discrete_states();
+        let next_event_time = unit.next_event_time();
         self.needs_evaluation = true;
-        Ok(have_states_changed)
+        Ok(EventEnd { is_unfinished: false, have_states_changed, next_event_time })
     }
 
     pub(super) fn enter_continuous_time_mode(&mut self) -> Result<(), CallError> {
@@ -172,7 +163,7 @@ impl Instance {
     #[inline]
     pub(super) fn require_computed(&self, row: usize) -> Result<(), CallError> {
         let value = self.unit.values()[row];
-        if value.is_finite() {
+        if is_finite(value) {
             return Ok(());
         }
         let variable = &self.variables[row];

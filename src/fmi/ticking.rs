@@ -106,11 +106,10 @@ impl Instance {
 
     /// Place of the clock with this value reference in the unit's clocks.
     pub(super) fn find_clock(&self, reference: u32) -> Result<usize, CallError> {
-        let description = self.unit.description();
         if let Some(variable) = self.variables.get(reference as usize) {
             return Err(CallError::NoClock { name: variable.name, reference });
         }
-        let found = description.clocks().position(|(known, _)| known == reference as usize);
+        let found = self.clocks().position(|(known, _)| known == reference as usize);
         found.ok_or_else(|| self.unknown_reference(reference))
     }
 

@@ -17,17 +17,30 @@ pub enum HostError {
     #[error("cannot open the FMU {}: {reason}", path.display())]
     OpenArchive { path: PathBuf, reason: String },
     /// An entry of the archive could not be written to the temporary directory.
-    #[error("cannot unpack `{entry}` of the FMU {}: {reason}", path.display())]
+    #[error("cannot unpack `{}` of the FMU {}: {reason}", entry.escape_debug(), path.display())]
     Unpack { path: PathBuf, entry: String, reason: String },
     /// An entry's name points out of the directory the archive is unpacked to.
-    #[error("refused to unpack the FMU {}: its entry `{entry}` would leave the target directory", path.display())]
+    #[error(
+        "refused to unpack the FMU {}: its entry `{}` would leave the target directory",
+        path.display(),
+        entry.escape_debug()
+    )]
     EntryEscapes { path: PathBuf, entry: String },
+    /// An entry is a link, or takes the place of another one.
+    #[error("refused to unpack the FMU {}: its entry `{}` {reason}", path.display(), entry.escape_debug())]
+    Entry { path: PathBuf, entry: String, reason: &'static str },
+    /// The FMU is larger than one of the [`super::Limits`].
+    #[error("{subject}: {value}, but `Limits::{name}` = {limit}; raise it if you trust the file")]
+    OverLimit { subject: String, value: String, limit: u64, name: &'static str },
     /// `modelDescription.xml` is not well-formed, or lacks something required.
     #[error("cannot read modelDescription.xml: {reason}")]
     Description { reason: String },
     /// An attribute of `modelDescription.xml` holds a value of the wrong type.
     #[error("cannot read modelDescription.xml: {attribute}=\"{text}\" of {element} is not {expected}")]
     Attribute { element: String, attribute: &'static str, text: String, expected: &'static str },
+    /// `modelDescription.xml` gives a name, or a value reference of FMI 3.0, to two variables.
+    #[error("cannot read modelDescription.xml: {what} is given to two variables, {first} and {second}")]
+    Duplicate { what: String, first: String, second: String },
     /// Neither FMI 2 nor FMI 3.
     #[error("fmiVersion \"{version}\" is not supported, only 2.0 and 3.0 are")]
     UnsupportedVersion { version: String },

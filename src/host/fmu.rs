@@ -12,6 +12,7 @@ use super::error::{HostError, Result};
 use super::instance::{Instance, Logging};
 use super::journal::Journal;
 use super::library::LoadedLibrary;
+use super::limits::Limits;
 use super::{fmi2, fmi3};
 use crate::fmi::FmiVersion;
 
@@ -48,16 +49,25 @@ impl Functions {
 }
 
 impl Fmu {
-    /// Unpacks the FMU at `path`, reads its description and loads its library for this platform.
+    /// Unpacks the FMU at `path` within the default [`Limits`], reads its description and loads its library for this
+    /// platform.
     ///
     /// This runs code of the FMU: open only what you trust.
     ///
     /// # Errors
-    /// Those of [`Archive::unpack`] and [`Archive::description`], [`HostError::NoCoSimulation`],
+    /// As [`Fmu::open_within`].
+    pub fn open(path: &Path) -> Result<Self> {
+        Self::open_within(path, &Limits::default())
+    }
+
+    /// As [`Fmu::open`], for FMUs that are larger than the default limits, or that shall be smaller.
+    ///
+    /// # Errors
+    /// Those of [`Archive::unpack_within`] and [`Archive::description`], [`HostError::NoCoSimulation`],
     /// [`HostError::NoLibrary`], [`HostError::LoadLibrary`], [`HostError::MissingFunction`] and
     /// [`HostError::VersionMismatch`].
-    pub fn open(path: &Path) -> Result<Self> {
-        let archive = Archive::unpack(path)?;
+    pub fn open_within(path: &Path, limits: &Limits) -> Result<Self> {
+        let archive = Archive::unpack_within(path, limits)?;
         let description = archive.description()?;
         let interface = description
             .co_simulation

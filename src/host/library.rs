@@ -10,6 +10,7 @@ use libloading::Library;
 use super::description::{CoSimulation, ModelDescription};
 use super::error::{HostError, Result};
 use super::journal::text_of;
+use crate::causes::with_causes;
 use crate::fmi::FmiVersion;
 
 /// The folders of `binaries` in which a library for this platform may lie, the standard's name first.
@@ -84,7 +85,7 @@ impl LoadedLibrary {
     ) -> Result<Self> {
         let path = locate(root, description, interface)?;
         let library = load(&path)
-            .map_err(|error| HostError::LoadLibrary { path: path.clone(), reason: error.to_string() })?;
+            .map_err(|error| HostError::LoadLibrary { path: path.clone(), reason: with_causes(&error) })?;
         Ok(Self { library, model: description.model_name.clone() })
     }
 

@@ -98,7 +98,7 @@ impl TwoUnitLoop {
             };
             probe.add(instance, variable, self.names.len())?;
             self.names.push(format!("{unit}.{variable}"));
-            self.units.push(instance.description().variable(variable)?.unit.clone());
+            self.units.push(instance.description().variable(variable)?.unit.as_deref().map(str::to_owned));
         }
         Ok(())
     }

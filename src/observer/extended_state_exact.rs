@@ -25,6 +25,9 @@ const TERMS: u32 = 16;
 const LARGEST_STEP: f64 = 0.25;
 /// Doublings up to which S is computed, from 1e-300 to 1e300 in one sample.
 const MAX_DOUBLINGS: u32 = 2000;
+/// Doublings for which exp(N h) = I + N S loses no more than some last digits. Each takes two bits of what is left of the
+/// exponential by the difference of ever larger numbers; beyond, the exponential is squared instead.
+const DIRECT_DOUBLINGS: u32 = 4;
 
 /// S, and exp(M T).
 struct Transition {
@@ -57,11 +60,15 @@ fn transition(gains: Gains, duration: f64) -> Transition {
         integral = Matrix3::identity() + times(&integral) * (step / f64::from(term));
     }
     integral *= step;
-    for _ in 0..doublings {
-        let exponential = Matrix3::identity() + times(&integral);
+    let mut exponential = Matrix3::identity() + times(&integral);
+    for doubling in 0..doublings {
         integral += exponential * integral;
+        exponential = if doubling < DIRECT_DOUBLINGS {
+            Matrix3::identity() + times(&integral)
+        } else {
+            exponential * exponential
+        };
     }
-    let exponential = Matrix3::identity() + times(&integral);
     // Back to z1, z2, z3 and t.
     let powers = [1.0, rate, rate * rate];
     let back = |x: Matrix3<f64>, factor: f64| {
@@ -239,6 +246,24 @@ mod tests {
             prop_assert!(relative(gains[0], closed[0]) < 1e-12);
             prop_assert!(relative(gains[1], closed[1]) < 1e-15 / (bandwidth * duration) + 1e-12);
             prop_assert!(relative(gains[2], closed[2]) < 1e-11);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn gains_far_beyond_the_sample_rate_follow_the_measurement(
+            first in 3.0..14.0f64, second in -2.0..6.0f64, third in -3.0..7.0f64, duration in 1e-6..1.0f64,
+        ) {
+            // As those of a nonlinear injection, frozen at a large error: the first one dwarfs the others.
+            let gains = [first, second, third].map(|power| libm::pow(10.0, power));
+            // Within the sample the first gain has done its work and the others have hardly begun.
+            prop_assume!(gains[0] * duration > 40.0 && gains[1] * duration < 1e-2 * gains[0]);
+            prop_assume!(gains[2] * duration * duration < 1e-2 * gains[0]);
+            let z = ExactPredictor::new(gains, 0.0, duration).step(ExtendedState::default(), 1.0, 0.0);
+            prop_assert!((z.position - 1.0).abs() < 1e-1, "{gains:?} {z:?}");
+            // The poles of the slow rest, by the first gain.
+            let velocity = gains[1] / gains[0];
+            prop_assert!((z.velocity - velocity).abs() < 1e-1 * velocity + gains[2] / gains[0] * duration, "{z:?}");
         }
     }
 

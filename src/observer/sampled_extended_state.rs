@@ -195,8 +195,8 @@ fn prepare(settings: &ExtendedStateSettings) -> Step {
     }
 }
 
-/// The difference of two finite numbers, finite also when it overflows.
+/// A difference that overflows, or one to an expectation that is not a number, is as large as can be.
 #[inline]
 fn finite(difference: f64) -> f64 {
-    difference.clamp(f64::MIN, f64::MAX)
+    if difference.is_nan() { f64::MAX } else { difference.clamp(f64::MIN, f64::MAX) }
 }

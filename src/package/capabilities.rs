@@ -1,6 +1,6 @@
 //! What the units declare to be able to do: the capability flags of both standards.
 
-use crate::unit::Description;
+use crate::unit::{Description, Edition};
 
 /// Capability flags of a unit, named as in FMI 3.0 where the standards differ in spelling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,9 +42,13 @@ pub struct Capabilities {
 }
 
 impl Capabilities {
-    /// Capabilities of a unit in the shared library.
-    pub fn of(description: &Description) -> Self {
-        if description.is_sampled() { CONTROLLER } else { PLANT }
+    /// Capabilities of an edition of a unit.
+    pub fn of(description: &Description, edition: Edition) -> Self {
+        match edition {
+            _ if !description.is_sampled() => PLANT,
+            Edition::Plain => CONTROLLER,
+            Edition::Clocked => CLOCKED_CONTROLLER,
+        }
     }
 }
 
@@ -80,21 +84,24 @@ const PLANT: Capabilities = Capabilities {
     ..EVERY_UNIT
 };
 
-/// Controllers act at their ticks: an importer may handle these as events, end steps at them, or schedule them. In
-/// between all outputs are held: at a communication point they depend on no input, as their empty dependencies say,
-/// and derivatives would all be zero.
+/// Controllers act at their ticks: an importer may end a step at one when it is called back before. In between all
+/// outputs are held: at a communication point they depend on no input, as their empty dependencies say, and derivatives
+/// would all be zero.
 const CONTROLLER: Capabilities = Capabilities {
     provides_intermediate_update: true,
     might_return_early_from_do_step: true,
     can_return_early_after_intermediate_update: true,
-    has_event_mode: true,
-    offers_scheduled_execution: true,
     ..EVERY_UNIT
 };
+
+/// An importer that sees the clocks may also handle ticks as events or schedule them.
+const CLOCKED_CONTROLLER: Capabilities =
+    Capabilities { has_event_mode: true, offers_scheduled_execution: true, ..CONTROLLER };
 
 // Flags that the standards allow only together with another.
 const fn is_consistent(can: &Capabilities) -> bool {
     (can.can_get_and_set_fmu_state || !can.can_serialize_fmu_state)
         && (can.provides_intermediate_update || !can.can_return_early_after_intermediate_update)
 }
-const _: () = assert!(is_consistent(&PLANT) && is_consistent(&CONTROLLER));
+const _: () =
+    assert!(is_consistent(&PLANT) && is_consistent(&CONTROLLER) && is_consistent(&CLOCKED_CONTROLLER));

@@ -1,9 +1,13 @@
-//! Files in the repository that are written from the variable tables: model descriptions and tables in the README.
+//! Files in the repository that are written from the variable tables, model descriptions and tables in the README, and
+//! from the tree of dependencies.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::{FmiVersion, PackageError, WrittenFile, model_description, replace_file, variable_text};
+use super::{
+    Form, PackageError, THIRD_PARTY_PATH, WrittenFile, model_description, replace_file, third_party,
+    variable_text,
+};
 use crate::unit::variable::{Kind, Variable};
 use crate::unit::{Description, StartValues, UNITS};
 
@@ -22,12 +26,12 @@ pub enum Readme {
 /// Path below the repository's root and text of each checked-in model description.
 pub fn checked_in_files() -> Result<Vec<(PathBuf, String)>, PackageError> {
     let mut files = Vec::new();
-    for version in FmiVersion::ALL {
-        for unit in UNITS {
-            let name = unit.description.name;
-            let path =
-                Path::new("modelDescription").join(version.directory()).join(name).with_extension("xml");
-            files.push((path, model_description(unit.description, StartValues::TABLE, version, None)?));
+    for unit in UNITS {
+        let description = unit.description;
+        for form in Form::all_of(description) {
+            let folder = Path::new("modelDescription").join(form.directory());
+            let text = model_description(description, StartValues::TABLE, form, None)?;
+            files.push((folder.join(description.name).with_extension("xml"), text));
         }
     }
     Ok(files)
@@ -55,6 +59,11 @@ pub fn describe(root: &Path) -> Result<(Vec<WrittenFile>, Readme), PackageError>
         None => Readme::NoMarkers(path),
     };
     Ok((written, readme))
+}
+
+/// Writes the list of the crates in the shared library below `root`, which holds the project's sources.
+pub fn describe_third_party(root: &Path) -> Result<WrittenFile, PackageError> {
+    write(root.join(THIRD_PARTY_PATH), &third_party(root)?)
 }
 
 fn write(path: PathBuf, text: &str) -> Result<WrittenFile, PackageError> {

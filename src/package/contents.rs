@@ -10,7 +10,7 @@ use super::plug::Plug;
 use super::reference_run::ReferenceRun;
 use super::related_files::related_files;
 use super::run_figure::run_figure;
-use super::{FmiVersion, GenerationTime, Library, PackageError, licenses};
+use super::{FmiVersion, Form, GenerationTime, Library, PackageError, licenses};
 use crate::unit::{Description, StartValues};
 
 /// A file of a package.
@@ -38,21 +38,20 @@ pub fn diagram_name(system: &str) -> String {
     format!("{system}.svg")
 }
 
-/// All files of the package of one unit, sorted by path.
+/// All files of the package of one unit in one form, sorted by path.
 pub fn contents<'a>(
     description: &'static Description,
     start_values: &StartValues,
-    version: FmiVersion,
+    form: Form,
     time: GenerationTime,
     libraries: &'a [Library],
 ) -> Result<Vec<Entry<'a>>, PackageError> {
     let name = description.name;
     let mut files: Vec<(&str, Cow<'a, [u8]>)> = vec![
-        ("modelDescription.xml", owned(model_description(description, start_values, version, Some(time))?)),
-        ("documentation/index.html", owned(documentation(description, start_values, version, Some(time)))),
+        ("modelDescription.xml", owned(model_description(description, start_values, form, Some(time))?)),
+        ("documentation/index.html", owned(documentation(description, start_values, form, Some(time)))),
         ("documentation/licenses/license.txt", Cow::Borrowed(licenses::LICENSE.as_bytes())),
         ("documentation/licenses/THIRD-PARTY.txt", Cow::Borrowed(licenses::THIRD_PARTY.as_bytes())),
-        ("documentation/licenses/Apache-2.0.txt", Cow::Borrowed(licenses::APACHE_2_0.as_bytes())),
     ];
     // FMI 2.0 has an icon of its own; terminals it takes from FMI 3.0 (text of 2.0.5, section 2.3).
     files.extend([
@@ -60,7 +59,7 @@ pub fn contents<'a>(
         ("terminalsAndIcons/icon.svg", Cow::Borrowed(icon_svg(name)?.as_bytes())),
         ("terminalsAndIcons/terminalsAndIcons.xml", owned(terminals_and_icons(description)?)),
     ]);
-    if version == FmiVersion::Two {
+    if form.version == FmiVersion::Two {
         files.push(("model.png", Cow::Owned(icon_png(name)?)));
     }
     let mut entries: Vec<Entry<'a>> =
@@ -77,7 +76,7 @@ pub fn contents<'a>(
     entries.extend(libraries.iter().map(|library| {
         let platform = library.platform();
         Entry {
-            path: format!("binaries/{}/{name}.{}", platform.directory(version), platform.extension()),
+            path: format!("binaries/{}/{name}.{}", platform.directory(form.version), platform.extension()),
             bytes: Cow::Borrowed(library.bytes()),
             executable: true,
         }

@@ -8,8 +8,8 @@ use super::contents::{RUN_FIGURE, diagram_name};
 use super::model_description::enumerations;
 use super::plug::Plug;
 use super::related_files::{DIRECTORY, INPUT, OUTPUT};
-use super::{FmiVersion, GenerationTime, licenses, variable_text};
-use crate::unit::{Description, StartValues};
+use super::{Form, GenerationTime, licenses, variable_text};
+use crate::unit::{Description, Edition, StartValues};
 
 pub(super) const STYLE: &str = "\
 body { font-family: sans-serif; line-height: 1.45; max-width: 70em; margin: 2em auto; padding: 0 1em; color: #1d2733; }
@@ -26,7 +26,7 @@ h1 img { height: 1.6em; vertical-align: middle; }
 pub fn documentation(
     description: &Description,
     start_values: &StartValues,
-    version: FmiVersion,
+    form: Form,
     time: Option<GenerationTime>,
 ) -> String {
     let name = description.name;
@@ -44,7 +44,7 @@ pub fn documentation(
     }));
     let loops = loops(description);
     let choices = choices(description);
-    let provenance = provenance(description, start_values, version, time);
+    let provenance = provenance(description, start_values, form, time);
     format!(
         "<!DOCTYPE html>
 <html lang=\"en\">
@@ -66,7 +66,8 @@ pub fn documentation(
 {choices}<h2>Reference run</h2>
 <p><a href=\"../{DIRECTORY}/{INPUT}\">{INPUT}</a> holds inputs, one row per communication point,
 <a href=\"../{DIRECTORY}/{OUTPUT}\">{OUTPUT}</a> the outputs after the initialization and after each step, with start
-values everywhere. An importer that sets each row, steps, and reads the outputs gets the same digits.</p>
+values everywhere. An importer that sets each row, steps, and reads the outputs gets the same digits, whether it sets
+the first row before or after the end of the initialization.</p>
 <p><img src=\"{RUN_FIGURE}\" alt=\"Inputs and outputs of the reference run\"></p>
 <h2>Provenance</h2>
 {provenance}
@@ -114,17 +115,19 @@ fn choices(description: &Description) -> String {
 fn provenance(
     description: &Description,
     start_values: &StartValues,
-    version: FmiVersion,
+    form: Form,
     time: Option<GenerationTime>,
 ) -> String {
     let time = time.map_or(String::new(), |time| format!(", source as of {time}"));
+    let version = form.version;
+    let clocks = if form.edition == Edition::Clocked { ", with clocks," } else { "" };
     format!(
-        "<p>Exported for FMI {version} by maglev-fmu {}{time}. Library, model description and this page come from \
+        "<p>Exported for FMI {version}{clocks} by maglev-fmu {}{time}. Library, model description and this page come from \
          one table of variables; its token is <code>{}</code>.</p>\n\
          <p>{}, {} license: <a href=\"licenses/license.txt\">license.txt</a>. The library contains software of \
          others: <a href=\"licenses/THIRD-PARTY.txt\">THIRD-PARTY.txt</a>.</p>",
         env!("CARGO_PKG_VERSION"),
-        start_values.token(description),
+        start_values.token(description, form.edition),
         licenses::COPYRIGHT,
         licenses::NAME,
     )

@@ -4,8 +4,10 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use super::FmiVersion;
+use super::{FmiVersion, ThirdPartyError};
+use crate::fmi::function_names;
 use crate::unit::UnitError;
+use crate::unit::start_values::StartValueError;
 
 /// Why packaging failed: the action and the path or value that it failed on.
 #[derive(Debug, Error)]
@@ -18,12 +20,14 @@ pub enum PackageError {
     Archive { path: PathBuf, source: zip::result::ZipError },
     #[error("cannot write the FMI {version} model description of {unit}")]
     ModelDescription { unit: &'static str, version: FmiVersion, source: quick_xml::SeError },
+    #[error("cannot list the crates in the shared library")]
+    ThirdParty(#[from] ThirdPartyError),
     #[error("cannot write the manifest of related files of {unit}")]
     Manifest { unit: &'static str, source: quick_xml::SeError },
     #[error("cannot write the system structure of {system}")]
     SystemStructure { system: &'static str, source: quick_xml::SeError },
-    #[error("system {system} needs {unit}, which is not in the list of units")]
-    UnknownUnit { system: &'static str, unit: &'static str },
+    #[error("a unit of the system {system} cannot start as the table of systems says")]
+    SystemStart { system: &'static str, source: StartValueError },
     #[error("cannot compute the reference output of {unit}")]
     ReferenceRun { unit: &'static str, source: UnitError },
     #[error("unit {unit} has no icon: draw assets/{unit}.svg and list it in src/package/icon.rs")]
@@ -39,8 +43,16 @@ pub enum PackageError {
         list(.looked_at)
     )]
     NoLibrary { looked_at: Vec<PathBuf> },
-    #[error("{} is no 64-bit ELF, PE or Mach-O library for x86_64 or aarch64", .path.display())]
+    #[error("{} is no 64-bit ELF, PE or Mach-O shared library for x86_64 or aarch64", .path.display())]
     UnknownPlatform { path: PathBuf },
+    #[error(
+        "{} is no library of these units: it lacks {first} and, with it, {count} of the {} functions of FMI 2.0 and FMI 3.0",
+        .path.display(),
+        FmiVersion::ALL.into_iter().map(|version| function_names(version).len()).sum::<usize>()
+    )]
+    MissingFunctions { path: PathBuf, first: String, count: usize },
+    #[error("{} is a library of other units: it does not know {unit}", .path.display())]
+    OtherUnits { path: PathBuf, unit: &'static str },
     #[error("{} and {} are both for {platform}: expected one library per platform", .first.display(), .second.display())]
     SamePlatform { first: PathBuf, second: PathBuf, platform: String },
     #[error("SOURCE_DATE_EPOCH = {value:?}: expected seconds since 1970, 0 to {}", u32::MAX)]

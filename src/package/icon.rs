@@ -3,6 +3,7 @@
 use resvg::{tiny_skia, usvg};
 
 use super::PackageError;
+use crate::causes::with_causes;
 
 /// Width and height of the picture \[pixel\].
 const SIZE: u32 = 200;
@@ -28,5 +29,5 @@ pub fn icon_png(unit: &'static str) -> Result<Vec<u8>, PackageError> {
     let mut picture = tiny_skia::Pixmap::new(SIZE, SIZE).ok_or_else(|| not_drawn("no memory".into()))?;
     let scale = SIZE as f32 / drawing.size().width();
     resvg::render(&drawing, tiny_skia::Transform::from_scale(scale, scale), &mut picture.as_mut());
-    picture.encode_png().map_err(|error| not_drawn(error.to_string()))
+    picture.encode_png().map_err(|error| not_drawn(with_causes(&error)))
 }

@@ -1,12 +1,22 @@
 //! Shared libraries to pack.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-use super::{PackageError, Platform};
+use object::read::NameOrOrdinal;
+use object::{BinaryFormat, Object};
+
+use super::{FmiVersion, PackageError, Platform};
+use crate::file;
+use crate::fmi::function_names;
+use crate::unit::UNITS;
 
 /// Name of the library target, which differs from the package's in the dash.
 const LIBRARY_NAME: &str = "maglev_fmu";
+
+/// More than any build of the library, with all that debuggers want to know \[byte\].
+const LARGEST: u64 = 256 << 20;
 
 /// A shared library, read into memory.
 #[derive(Clone, Debug)]
@@ -17,11 +27,27 @@ pub struct Library {
 }
 
 impl Library {
-    /// Reads the library at `path` and finds out what platform it is for.
+    /// Reads the library at `path`, finds out what platform it is for, and makes sure that it is one of these units: it
+    /// exports every function of both standards and knows every unit's name.
     pub fn read(path: &Path) -> Result<Self, PackageError> {
-        let bytes = fs::read(path).map_err(|source| PackageError::Read { path: path.to_owned(), source })?;
-        let platform = Platform::of_library(&bytes)
-            .ok_or_else(|| PackageError::UnknownPlatform { path: path.to_owned() })?;
+        let bytes = file::read_at_most(path, LARGEST)
+            .map_err(|source| PackageError::Read { path: path.to_owned(), source })?;
+        let unknown = || PackageError::UnknownPlatform { path: path.to_owned() };
+        let library = object::File::parse(bytes.as_slice()).map_err(|_| unknown())?;
+        let platform = Platform::of_library(&library, library.format()).ok_or_else(unknown)?;
+        let missing = missing_functions(&library);
+        if let Some(first) = missing.first() {
+            let first = (*first).to_owned();
+            return Err(PackageError::MissingFunctions {
+                path: path.to_owned(),
+                first,
+                count: missing.len(),
+            });
+        }
+        let is_known = |name: &str| bytes.windows(name.len()).any(|part| part == name.as_bytes());
+        if let Some(unit) = UNITS.iter().map(|unit| unit.description.name).find(|name| !is_known(name)) {
+            return Err(PackageError::OtherUnits { path: path.to_owned(), unit });
+        }
         Ok(Self { path: path.to_owned(), platform, bytes })
     }
 
@@ -59,6 +85,21 @@ impl Library {
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
+}
+
+/// Functions of both standards that the library does not export.
+fn missing_functions(library: &object::File<'_>) -> Vec<&'static str> {
+    // The linker of macOS puts an underscore before every name of C.
+    let prefix: &[u8] = if library.format() == BinaryFormat::MachO { b"_" } else { b"" };
+    let exports = library.exports().into_iter().flatten().flatten();
+    let names: HashSet<Vec<u8>> = exports
+        .filter_map(|export| match export.into_name() {
+            NameOrOrdinal::Name(name) => name.strip_prefix(prefix).map(<[u8]>::to_vec),
+            NameOrOrdinal::Ordinal(_) => None,
+        })
+        .collect();
+    let wanted = FmiVersion::ALL.into_iter().flat_map(function_names).copied();
+    wanted.filter(|name| !names.contains(name.as_bytes())).collect()
 }
 
 /// The library in the program's directory, where `cargo build` and an installation put it, or in `deps` below,

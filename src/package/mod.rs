@@ -23,16 +23,16 @@ mod reference_run;
 mod related_files;
 mod run_figure;
 mod system_structure;
+mod third_party;
 mod variable_text;
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-pub use crate::fmi::FmiVersion;
+pub use crate::fmi::{FmiVersion, Form};
 pub use archive::archive;
 pub use capabilities::Capabilities;
-pub use checked_in::{Readme, checked_in_files, describe, readme_with_tables};
+pub use checked_in::{Readme, checked_in_files, describe, describe_third_party, readme_with_tables};
 pub use contents::{Entry, contents};
 pub use error::PackageError;
 pub use generation_time::GenerationTime;
@@ -43,7 +43,11 @@ pub use parameter_file::ParameterFile;
 pub use platform::Platform;
 pub use reference_run::{ReferenceRun, Table};
 pub use related_files::{DIRECTORY as RELATED_FILES, INPUT as REFERENCE_INPUT, OUTPUT as REFERENCE_OUTPUT};
+pub use third_party::{PATH as THIRD_PARTY_PATH, ThirdPartyError, third_party};
 
+pub use system_structure::SystemForm;
+
+use crate::file;
 use crate::unit::system::SYSTEMS;
 use crate::unit::{Description, StartValues, UNITS};
 
@@ -55,8 +59,9 @@ pub struct WrittenFile {
     pub size: usize,
 }
 
-/// Writes `directory/fmi2/<Unit>.fmu` and `directory/fmi3/<Unit>.fmu` for all units, each with all `libraries`, and
-/// `directory/<system>.ssp` for all systems.
+/// Writes `directory/<form>/<Unit>.fmu` for all units in all their forms ([`Form::directory`]), each with all
+/// `libraries`, and for all systems a package of each [`SystemForm`]: `directory/<system>.ssp`,
+/// `directory/driven/<system>.ssp` and `directory/ssp2/<system>.ssp`.
 ///
 /// The same arguments give the same bytes. An archive appears complete or not at all.
 pub fn build(
@@ -76,50 +81,39 @@ pub fn build_with(
     time: GenerationTime,
 ) -> Result<Vec<WrittenFile>, PackageError> {
     let mut written = Vec::new();
-    // Packages by unit that go into the systems.
-    let mut for_systems = BTreeMap::new();
-    for version in FmiVersion::ALL {
-        let directory = directory.join(version.directory());
+    for form in Form::ALL {
+        let directory = directory.join(form.directory());
         fs::create_dir_all(&directory)
             .map_err(|source| PackageError::Write { path: directory.clone(), source })?;
-        for unit in UNITS {
+        for unit in UNITS.iter().filter(|unit| form.edition.suits(unit.description)) {
             let path = directory.join(unit.description.name).with_extension("fmu");
             let own =
                 start_values.iter().find(|(description, _)| std::ptr::eq(*description, unit.description));
             let own = own.map_or(StartValues::TABLE, |(_, values)| values);
-            let entries = contents(unit.description, own, version, time, libraries)?;
+            let entries = contents(unit.description, own, form, time, libraries)?;
             let bytes = archive(&entries, time)
                 .map_err(|source| PackageError::Archive { path: path.clone(), source })?;
             replace_file(&path, &bytes)?;
             written.push(WrittenFile { path, size: bytes.len() });
-            if version == system_structure::FMI_VERSION {
-                for_systems.insert(unit.description.name, (bytes, own));
-            }
         }
     }
-    for system in SYSTEMS {
-        let path = directory.join(system.name).with_extension("ssp");
-        let entries = system_structure::contents(system, time, &for_systems)?;
-        let bytes =
-            archive(&entries, time).map_err(|source| PackageError::Archive { path: path.clone(), source })?;
-        replace_file(&path, &bytes)?;
-        written.push(WrittenFile { path, size: bytes.len() });
+    for form in SystemForm::ALL {
+        let directory = directory.join(form.directory());
+        fs::create_dir_all(&directory)
+            .map_err(|source| PackageError::Write { path: directory.clone(), source })?;
+        for system in SYSTEMS {
+            let path = directory.join(system.name).with_extension("ssp");
+            let entries = system_structure::contents(system, form, start_values, time, libraries)?;
+            let bytes = archive(&entries, time)
+                .map_err(|source| PackageError::Archive { path: path.clone(), source })?;
+            replace_file(&path, &bytes)?;
+            written.push(WrittenFile { path, size: bytes.len() });
+        }
     }
     Ok(written)
 }
 
-/// Writes a file under another name first, so that a failure leaves the old file or none.
+/// Writes a file whole or not at all.
 fn replace_file(path: &Path, contents: &[u8]) -> Result<(), PackageError> {
-    let failed = |source| PackageError::Write { path: path.to_owned(), source };
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // The process's umask takes away what it should.
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    let file = builder.tempfile_in(path.parent().unwrap_or(Path::new("."))).map_err(failed)?;
-    fs::write(file.path(), contents).map_err(failed)?;
-    file.persist(path).map_err(|error| failed(error.error))?;
-    Ok(())
+    file::replace(path, contents).map_err(|source| PackageError::Write { path: path.to_owned(), source })
 }

@@ -3,6 +3,9 @@
 //! The inputs are those that the unit meets in its loop, with the package's start values in the unit and those of the
 //! table in its partner. After a third of the run the inputs that the loop leaves free, such as a reference or a disturbing
 //! force, step by a twentieth of their nominal value, so that they matter as well.
+//!
+//! Some importers set the first row of inputs before the end of the initialisation, some after it. The run is the same
+//! either way: an input that an output at the start follows from keeps its start value over the first step.
 
 use crate::unit::system::{SYSTEMS, System};
 use crate::unit::variable::{Causality, Kind, Variable};
@@ -114,6 +117,9 @@ struct Bench {
     /// Which of the units is looked at.
     place: usize,
     free: Vec<usize>,
+    /// Inputs from which outputs at the start follow.
+    initial: Vec<usize>,
+    has_started: bool,
 }
 
 /// Places in a bench with a loop, in the order of stepping.
@@ -131,6 +137,9 @@ impl Bench {
             None => (UNITS.iter().copied().filter(|unit| is_it(unit)).collect(), 0),
         };
         let mut units: Vec<Box<dyn Unit>> = types.iter().map(|unit| (unit.create)()).collect();
+        if let Some(system) = system {
+            apply_starts_of_partner(system, description, start_values, &types, &mut units);
+        }
         start_values.apply(&mut *units[place]);
         units.iter_mut().try_for_each(|unit| unit.initialise(0.0))?;
         let wires =
@@ -142,7 +151,8 @@ impl Bench {
         };
         let rows = description.variables.iter().enumerate();
         let free = rows.filter(|(_, variable)| is_free(variable)).map(|(reference, _)| reference).collect();
-        Ok(Self { units, system, place, free })
+        let initial = initial_inputs(description);
+        Ok(Self { units, system, place, free, initial, has_started: false })
     }
 
     fn unit(&self) -> &dyn Unit {
@@ -176,7 +186,11 @@ impl Bench {
                     let value = self.units[source].values()[reference(&*self.units[source], output)];
                     let target = &mut self.units[place];
                     let reference = reference(&**target, input);
-                    target.values_mut()[reference] = value;
+                    let keeps_start =
+                        !self.has_started && place == self.place && self.initial.contains(&reference);
+                    if !keeps_start {
+                        target.values_mut()[reference] = value;
+                    }
                 }
             }
             if place == self.place {
@@ -184,7 +198,33 @@ impl Bench {
             }
             self.units[place].advance(step_size, &mut Silence)?;
         }
+        self.has_started = true;
         Ok(seen)
+    }
+}
+
+/// Value references of the inputs from which outputs at the end of the initialisation follow.
+fn initial_inputs(description: &'static Description) -> Vec<usize> {
+    let outputs = description.variables.iter().filter(|variable| variable.causality == Causality::Output);
+    let sources = outputs.flat_map(|output| output.initially_from).filter_map(|name| description.find(name));
+    let inputs = sources.filter(|(_, source)| source.causality == Causality::Input);
+    inputs.map(|(reference, _)| reference).collect()
+}
+
+/// A unit that starts as in a package of its system meets the other one as it starts there.
+fn apply_starts_of_partner(
+    system: &System,
+    description: &'static Description,
+    start_values: &StartValues,
+    types: &[&UnitType],
+    units: &mut [Box<dyn Unit>],
+) {
+    let own = system.start_values(description);
+    if own.is_ok_and(|own| own != *StartValues::TABLE && start_values.include(&own)) {
+        for (unit, made) in types.iter().zip(units) {
+            // What cannot be packaged has been refused before.
+            system.start_values(unit.description).unwrap_or_default().apply(&mut **made);
+        }
     }
 }
 
@@ -244,6 +284,24 @@ mod tests {
                 let first = run.inputs.rows[0].1[column];
                 let moves = run.inputs.rows.iter().any(|(_, values)| values[column] != first);
                 assert!(moves, "{} of {}", variable.name, unit.description.name);
+            }
+        }
+    }
+
+    /// In a package of the rig both sensors are adjusted; a plant with another sensor would lose its ball.
+    #[test]
+    fn units_of_a_system_meet_each_other() {
+        let rig = System::find("rig").unwrap();
+        for unit in [rig.plant, rig.controller] {
+            let starts = rig.start_values(unit.description).unwrap();
+            let run = ReferenceRun::of(unit.description, &starts).unwrap();
+            for table in [&run.inputs, &run.outputs] {
+                let sensor =
+                    table.variables.iter().position(|variable| variable.name.starts_with("sensor_voltage"));
+                if let Some(column) = sensor {
+                    let worst = table.rows.iter().map(|(_, row)| row[column].abs()).fold(0.0, f64::max);
+                    assert!(worst < 0.5, "{}: {worst} V off the operating point", unit.description.name);
+                }
             }
         }
     }

@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 
 /// Longest step of the integrator \[s\]: with order 5 far below the double's resolution around the operating point,
 /// where the time constant is 21 ms; close to the coil at full voltage it is 0.12 ms.
-pub(super) const LONGEST_SUBSTEP: f64 = 5e-5;
+pub const LONGEST_SUBSTEP: f64 = 5e-5;
 
 /// Position and velocity of the ball.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

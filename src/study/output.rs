@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::claim::Claim;
 use super::{FigureWithData, Findings, StudyError, Table, chart, report};
+use crate::file;
 
 /// The claims of one experiment in `claims.json`.
 #[derive(Serialize)]
@@ -57,10 +58,9 @@ fn csv(table: &Table) -> Result<Vec<u8>, csv::Error> {
     for row in 0..rows {
         writer.write_record(table.columns.iter().map(|column| format!("{:e}", column[row])))?;
     }
-    // Writing to memory cannot fail.
-    Ok(writer.into_inner().unwrap_or_default())
+    writer.into_inner().map_err(|error| error.into_error().into())
 }
 
 fn write_file(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
-    fs::write(path, bytes).map_err(|source| StudyError::Write { path: path.to_owned(), source })
+    file::replace(path, bytes).map_err(|source| StudyError::Write { path: path.to_owned(), source })
 }

@@ -3,6 +3,7 @@
 use super::Description;
 use super::Unit;
 use super::variable::{Causality, Kind};
+use serde::{Deserialize, Serialize};
 
 /// Largest number of continuous states of a unit.
 pub const MAX_STATES: usize = 4;
@@ -10,20 +11,36 @@ pub const MAX_STATES: usize = 4;
 /// Largest number of event indicators of a unit.
 pub const MAX_EVENT_INDICATORS: usize = 4;
 
+/// Who moves a unit in time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Solver {
+    /// The unit itself ([`Unit::advance`]): between the ends of its steps there is nothing to see, so that outputs may
+    /// tell of the last step and sensors are read at its end.
+    #[default]
+    Unit,
+    /// An importer, in continuous time: what follows from states and inputs does so at each instant.
+    Importer,
+}
+
 /// A unit with continuous states x' = f(x, u, p), y = g(x, u, p), all of them rows of its table of values.
 ///
-/// The units are autonomous: nothing depends on time but through the inputs. Discrete outputs (sensor readings, the
-/// echo of the voltage) are held in continuous time; they change at initialisation and at events.
+/// The units are autonomous: nothing depends on time but through the inputs. Only contact and the readings of a sensor
+/// with a sample time are held in continuous time; they change at initialisation and at events.
 pub trait ContinuousUnit: Unit {
     /// Computes derivatives, event indicators and everything else that follows at one instant from the values of
     /// states, inputs and parameters. Discrete values stay.
     fn evaluate(&mut self);
 
-    /// An event begins: sensors are read, the inputs being those from before the event.
-    fn enter_event(&mut self);
+    /// Says who solves the unit; whether that is somebody else than before. What follows is computed by the next
+    /// [`Unit::initialise`].
+    fn set_solver(&mut self, solver: Solver) -> bool;
 
-    /// Discrete transitions of an event, whose time stands still; whether a continuous state jumped.
+    /// Discrete transitions of an event at the present time, at which a sensor may be due; whether a continuous state
+    /// jumped.
     fn update_discrete_states(&mut self) -> bool;
+
+    /// Time \[s\] after the present one at which the importer has to come to an event.
+    fn next_event_time(&self) -> Option<f64>;
 
     /// Partial derivative of an output or state derivative with respect to an input, state or parameter, by value
     /// reference, in closed form, where the unit stands.

@@ -50,6 +50,11 @@ impl Description {
     /// Instantiation token (FMI 2: GUID), computed from the interface, so that a model description and a library
     /// that disagree about a variable cannot be loaded together.
     pub fn token(&self) -> Token {
+        self.token_with(core::iter::empty())
+    }
+
+    /// Token of a package that shows clocks of these names beside the variables.
+    pub(super) fn token_with(&self, clocks: impl Iterator<Item = &'static str>) -> Token {
         let mut hash = Fnv128::new();
         hash.add(env!("CARGO_PKG_VERSION"));
         hash.add(self.name);
@@ -71,9 +76,7 @@ impl Description {
                 hash.add_bytes(&number.to_bits().to_le_bytes());
             }
         }
-        for (_, clock) in self.clocks() {
-            hash.add(clock.name);
-        }
+        clocks.for_each(|clock| hash.add(clock));
         Token::from_bits(hash.0)
     }
 }

@@ -3,10 +3,13 @@
 
 pub mod continuous;
 pub mod description;
+pub mod edition;
 mod end_stop_events;
+mod input_ramp;
 mod levitated_ball;
 mod levitated_ball_controller;
 mod levitated_ball_plant;
+mod longest_step;
 mod maglev_rig;
 mod maglev_rig_controller;
 mod maglev_rig_plant;
@@ -18,15 +21,19 @@ pub mod persistence;
 pub mod quantity;
 pub mod sample_clock;
 pub mod sampled;
+mod sensor;
+mod start_delay;
 pub mod start_values;
 pub mod system;
 pub mod value;
 pub mod variable;
+pub mod work;
 
 use core::fmt;
 
-pub use continuous::{ContinuousRows, ContinuousUnit};
+pub use continuous::{ContinuousRows, ContinuousUnit, Solver};
 pub use description::{Description, Token};
+pub use edition::Edition;
 pub use levitated_ball_controller::LevitatedBallController;
 pub use levitated_ball_plant::LevitatedBallPlant;
 pub use maglev_rig_controller::MaglevRigController;
@@ -39,6 +46,7 @@ pub use sampled::SampledUnit;
 pub use start_values::StartValues;
 pub use system::System;
 use thiserror::Error;
+use value::Readable;
 
 /// Kinds of remarks a unit makes while it runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,12 +81,17 @@ pub enum UnitError {
     InputLeavesRange(value::ValueError),
     #[error("{name} would become {value} {unit} within the step: expected a finite number")]
     Diverged { name: &'static str, value: f64, unit: &'static str },
-    #[error("{ticks} ticks within one step of {duration} s: expected at most {limit}")]
-    TooManyTicks { ticks: i64, duration: f64, limit: i64 },
-    #[error("a step of {duration} s: expected at most {limit} s")]
+    #[error(
+        "a step of {duration} s: expected at most {limit} s, about a second of computing with these parameters",
+        duration = Readable(*duration), limit = Readable(*limit)
+    )]
     StepTooLong { duration: f64, limit: f64 },
-    #[error("{first} and {second} are both {value} {unit}: expected two different numbers")]
+    #[error(
+        "{first} and {second} are both {value} {unit}: expected two different numbers", value = Readable(*value)
+    )]
     Equal { first: &'static str, second: &'static str, value: f64, unit: &'static str },
+    #[error("{name} = {value} {unit}: expected {expected}", value = Readable(*value))]
+    Unusable { name: &'static str, value: f64, unit: &'static str, expected: &'static str },
 }
 
 /// An exported unit: a flat array of values, indexed by value reference, and what it takes to advance them.
@@ -96,6 +109,12 @@ pub trait Unit: Persistent + Send {
 
     /// Takes over tunable parameters that were set since the last step; initialisation does so, too.
     fn adopt_parameters(&mut self);
+
+    /// Whether the parameters fit together. Asked when they are all set, at the end of initialisation and when tunable
+    /// ones were set since: in between an importer may be about to set another one.
+    fn check_parameters(&self) -> Result<(), UnitError> {
+        Ok(())
+    }
 
     /// Computes all calculated values and the internal state from parameters and inputs at `start_time` \[s\].
     /// May be called again after a parameter changed, until the first [`Unit::advance`].
@@ -121,6 +140,9 @@ pub trait Unit: Persistent + Send {
         true
     }
 }
+
+/// Largest number of rows of a table.
+pub const LARGEST_TABLE: usize = 128;
 
 /// Value reference of the simulation time, the first row of every table.
 pub const TIME: usize = 0;
@@ -166,6 +188,12 @@ pub static UNITS: &[&UnitType] = &[
     &MAGLEV_RIG_CONTROLLER,
 ];
 
+/// Every unit in every edition that suits it.
+pub fn editions() -> impl Iterator<Item = (&'static UnitType, Edition)> {
+    let all = UNITS.iter().flat_map(|unit| Edition::ALL.map(|edition| (*unit, edition)));
+    all.filter(|(unit, edition)| edition.suits(unit.description))
+}
+
 /// Start values of a table.
 fn start_values<const N: usize>(variables: &[variable::Variable; N]) -> [f64; N] {
     core::array::from_fn(|reference| variables[reference].start)
@@ -180,6 +208,7 @@ mod tests {
     fn tables_are_consistent() {
         for unit in UNITS {
             let variables = unit.description.variables;
+            assert!(variables.len() <= LARGEST_TABLE, "{}", unit.description.name);
             assert_eq!(variables[TIME].causality, Causality::Independent, "{}", unit.description.name);
             for (reference, variable) in variables.iter().enumerate() {
                 let name = variable.name;
@@ -208,10 +237,9 @@ mod tests {
 
     #[test]
     fn tokens_differ() {
-        for (index, unit) in UNITS.iter().enumerate() {
-            for other in &UNITS[..index] {
-                assert_ne!(unit.description.token(), other.description.token());
-            }
+        let tokens: Vec<_> = editions().map(|(unit, edition)| edition.token(unit.description)).collect();
+        for (index, token) in tokens.iter().enumerate() {
+            assert!(!tokens[..index].contains(token), "{token:?}");
         }
     }
 }

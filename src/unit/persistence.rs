@@ -5,6 +5,7 @@
 
 use super::Unit;
 use super::value::ValueError;
+use super::variable::Causality;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use thiserror::Error;
@@ -55,7 +56,7 @@ impl<U: Unit + Serialize + DeserializeOwned> Persistent for U {
     }
 }
 
-/// Reads a unit called `name`. What a table says of parameters and inputs holds for every unit that could have been
+/// Reads a unit called `name`. What a table says of time, parameters and inputs holds for every unit that could have been
 /// saved, so anything else is refused.
 fn read<U: Unit + DeserializeOwned>(
     name: &'static str,
@@ -69,7 +70,7 @@ fn read<U: Unit + DeserializeOwned>(
         return Err(PersistenceError::TooLong { unit: name, length, excess: rest.len() });
     }
     for (variable, value) in unit.description().variables.iter().zip(unit.values()) {
-        if !variable.is_calculated() {
+        if !variable.is_calculated() || variable.causality == Causality::Independent {
             variable.check(*value).map_err(|value| PersistenceError::Value { unit: name, value })?;
         }
     }

@@ -5,7 +5,6 @@
 //! belongs to a step only if it lies more than a ten-thousandth of a period before the step's end. Ticks thus never
 //! depend on how the interval was cut into steps, not even when an importer rounds its step size to some ten digits.
 
-use super::UnitError;
 use serde::{Deserialize, Serialize};
 
 /// Share of a period by which a communication point may miss a tick and still mean it.
@@ -40,17 +39,40 @@ impl SampleClock {
         first..self.next
     }
 
-    /// As [`SampleClock::advance`]; refused, the clock untouched, if more than `limit` ticks lie in `duration`.
+    /// Lets `duration` \[s\] pass and returns the numbers of the ticks in it, its start excluded, its end not, for what
+    /// happens at the ends of steps. Not to be mixed with [`SampleClock::advance`] on one clock.
     #[inline]
-    pub fn advance_at_most(&mut self, duration: f64, limit: i64) -> Result<core::ops::Range<i64>, UnitError> {
-        let mut clock = *self;
-        let ticks = clock.advance(duration);
-        let number = ticks.end.saturating_sub(ticks.start);
-        if number > limit {
-            return Err(UnitError::TooManyTicks { ticks: number, duration, limit });
+    pub fn advance_through(&mut self, duration: f64) -> core::ops::Range<i64> {
+        self.pass(duration);
+        self.take_all_due()
+    }
+
+    /// Moves to `time` \[s\], never back, counts the ticks up to it, it included, and returns their numbers.
+    pub fn advance_up_to(&mut self, time: f64) -> core::ops::Range<i64> {
+        if time > self.elapsed.0 {
+            self.stand_at(time);
         }
-        *self = clock;
-        Ok(ticks)
+        self.take_all_due()
+    }
+
+    /// Whether the last tick that was counted is at the present time, but for rounding.
+    pub fn has_just_ticked(&self) -> bool {
+        let periods = (self.elapsed.0 + self.elapsed.1) / self.period;
+        (periods - self.next.saturating_sub(1) as f64).abs() <= tolerance(periods)
+    }
+
+    /// Time until tick `k` \[s\].
+    pub fn until(&self, k: i64) -> f64 {
+        (self.time_of(k) - self.elapsed.0) - self.elapsed.1
+    }
+
+    fn take_all_due(&mut self) -> core::ops::Range<i64> {
+        let first = self.next;
+        self.next = self.first_tick_not_before_now().max(first);
+        if self.is_due() {
+            self.next = self.next.saturating_add(1);
+        }
+        first..self.next
     }
 
     /// Lets `duration` \[s\] pass and leaves the ticks in it to the caller, who takes them one by one.
@@ -98,8 +120,7 @@ impl SampleClock {
         if clock.advance(duration).is_empty() {
             return None;
         }
-        let remaining = (self.next_time() - self.elapsed.0) - self.elapsed.1;
-        Some(if self.is_due() { 0.0 } else { remaining.max(0.0).min(duration) })
+        Some(if self.is_due() { 0.0 } else { self.until(self.next).max(0.0).min(duration) })
     }
 
     /// Counts the next tick and returns its time \[s\].
@@ -213,16 +234,20 @@ mod tests {
     }
 
     #[test]
-    fn too_many_ticks_are_counted_and_refused() {
-        for duration in [1.0, 1e300, f64::MAX] {
-            let mut clock = SampleClock::new(1e-3, 0.0);
-            let refused = clock.advance_at_most(duration, 999).unwrap_err();
-            assert!(
-                matches!(refused, UnitError::TooManyTicks { ticks: 1000.., limit: 999, .. }),
-                "{refused}"
-            );
-            assert_eq!(clock.advance_at_most(0.999, 999), Ok(0..999));
-        }
+    fn ticks_at_the_end_belong_to_a_step_that_is_gone_through() {
+        let mut clock = SampleClock::new(1e-3, 0.0);
+        assert_eq!(clock.advance_through(0.0), 0..1);
+        assert_eq!(clock.advance_through(0.5e-3), 1..1);
+        assert_eq!(clock.advance_through(0.5e-3), 1..2);
+        assert_eq!(clock.advance_through(3.7e-3), 2..5);
+        assert_eq!(clock.advance_up_to(0.005), 5..6);
+        // Neither twice nor back, and what is rounded off still counts.
+        assert_eq!(clock.advance_up_to(0.005), 6..6);
+        assert_eq!(clock.advance_up_to(0.001), 6..6);
+        assert_eq!(clock.advance_up_to(0.005_999_999_99), 6..7);
+        assert_eq!(clock.advance_up_to(0.0105), 7..11);
+        assert!(clock.may_stand_where_it_does(1e-3));
+        assert_eq!(clock.advance_up_to(f64::MAX).end, i64::MAX);
     }
 
     #[test]

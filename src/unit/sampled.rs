@@ -1,10 +1,12 @@
 //! Units that act at the ticks of a clock: what it takes to leave the ticks to somebody else.
 
 use super::sample_clock::SampleClock;
-use super::{Description, Journal};
+use super::work::{LARGEST_WORK, require_affordable};
+use super::{Description, Journal, UnitError};
+use core::ops::Range;
 
-/// Ticks in one step, minutes of computing; more can only be a mistake, as an end time that stands for "never".
-pub const LARGEST_NUMBER_OF_TICKS: i64 = 1_000_000_000;
+/// Ticks that any step may have, so that short steps need not be judged: less than [`LARGEST_WORK`] whatever the observer.
+const ALWAYS_AFFORDABLE: i64 = 5;
 
 /// A unit whose ticks may be had one by one; [`super::Unit::advance`] runs them by itself.
 ///
@@ -17,6 +19,21 @@ pub trait SampledUnit {
 
     /// Reads the inputs and sets the outputs as at `time` \[s\]. The caller keeps the clock.
     fn tick(&mut self, time: f64, journal: &mut dyn Journal);
+
+    /// What a tick costs at most with the present parameters \[s\], see [`super::work`].
+    fn cost_of_tick(&self) -> f64;
+
+    /// The clock after `duration` \[s\], and the numbers of the ticks until then; refused if they would take too long.
+    #[inline]
+    fn affordable_ticks(&self, duration: f64) -> Result<(SampleClock, Range<i64>), UnitError> {
+        let mut clock = *self.clock();
+        let ticks = clock.advance(duration);
+        if ticks.end.saturating_sub(ticks.start) > ALWAYS_AFFORDABLE {
+            let cost = self.cost_of_tick().min(LARGEST_WORK / ALWAYS_AFFORDABLE as f64);
+            require_affordable(duration, cost / clock.period())?;
+        }
+        Ok((clock, ticks))
+    }
 }
 
 /// A clock that an importer can see. It holds no value and thus has no row in the table of values.
@@ -30,9 +47,9 @@ pub struct ClockVariable {
 
 /// Every sampled unit has these two, with the value references that follow those of its table.
 ///
-/// No other variable is bound to them (FMI 3.0: attribute `clocks`). Bound variables may be read at a tick only, so
-/// that importers without events could not read the outputs at all; the outputs are states that hold what the last
-/// tick has left, as they do in FMI 2.0.
+/// No variable but `ticked` itself is bound to one of them (FMI 3.0: attribute `clocks`). Bound variables may be read at
+/// a tick only, so that importers without events could not read the outputs at all; the outputs are states that hold
+/// what the last tick has left, as they do in FMI 2.0.
 pub static CLOCKS: [ClockVariable; 2] = [
     ClockVariable {
         name: "tick",

@@ -2,14 +2,14 @@
 //!
 //! An importer need not set a variable that is to start with the value in the model description, so the library has to
 //! start with that value by itself. A package with other start values therefore carries them in its instantiation token
-//! (FMI 2: GUID), which every importer hands to the library as it stands: the token of the unit, then `;` and
+//! (FMI 2: GUID), which every importer hands to the library as it stands: the token of the unit's edition, then `;` and
 //! `value reference=value` for each, in decimals that read back to the same bits:
 //!
 //! ```text
 //! {01234567-89ab-cdef-0123-456789abcdef};17=180.0;23=-3705.0
 //! ```
 //!
-//! The unit's token covers the table, so the references cannot mean other variables. No file is read at run time, one
+//! The edition's token covers the table, so the references cannot mean other variables. No file is read at run time, one
 //! library serves all packages, and a reset goes back to these values.
 
 use core::fmt::{self, Write};
@@ -19,7 +19,7 @@ use thiserror::Error;
 use super::memory::{OutOfMemory, try_reserve};
 use super::value::ValueError;
 use super::variable::{Kind, Variable};
-use super::{Description, UNITS, Unit, UnitType};
+use super::{Description, Edition, Unit, UnitType, editions};
 
 /// Start values by value reference, in ascending order; variables that are not in it start as the table says.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -30,7 +30,7 @@ pub struct StartValues {
 /// Why a variable cannot start with a value.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum StartValueError {
-    #[error("{unit} has no variable {name}")]
+    #[error("{unit} has no variable {}", name.escape_debug())]
     UnknownVariable { unit: &'static str, name: String },
     #[error("{unit} has no variable with the value reference {reference}")]
     UnknownReference { unit: &'static str, reference: usize },
@@ -95,6 +95,23 @@ impl StartValues {
             return Err(StartValueError::NotWhole { name: variable.name, value, expected });
         }
         variable.check(value)?;
+        Ok(self.insert(reference, value)?)
+    }
+
+    /// These values, except where `others` have some.
+    pub fn overridden_by(mut self, others: &Self) -> Result<Self, OutOfMemory> {
+        for (reference, value) in &others.values {
+            self.insert(*reference, *value)?;
+        }
+        Ok(self)
+    }
+
+    /// Whether all of `others` are among these values.
+    pub fn include(&self, others: &Self) -> bool {
+        others.values.iter().all(|value| self.values.contains(value))
+    }
+
+    fn insert(&mut self, reference: usize, value: f64) -> Result<(), OutOfMemory> {
         match self.values.binary_search_by_key(&reference, |(known, _)| *known) {
             Ok(place) => self.values[place].1 = value,
             Err(place) => {
@@ -111,9 +128,9 @@ impl StartValues {
         own.map_or(variable.start, |place| self.values[place].1)
     }
 
-    /// Instantiation token of a package of this unit with these start values.
-    pub fn token(&self, description: &Description) -> String {
-        let mut token = description.token().as_str().to_owned();
+    /// Instantiation token of a package of this edition of the unit with these start values.
+    pub fn token(&self, description: &Description, edition: Edition) -> String {
+        let mut token = edition.token(description).as_str().to_owned();
         for (reference, value) in &self.values {
             // Writing to a string cannot fail.
             let _ = write!(token, ";{reference}={value:?}");
@@ -129,13 +146,12 @@ impl StartValues {
     }
 }
 
-/// The unit that a token stands for and the start values in it.
-pub fn read_token(token: &str) -> Result<(&'static UnitType, StartValues), TokenError<'_>> {
+/// The edition of a unit that a token stands for and the start values in it.
+pub fn read_token(token: &str) -> Result<(&'static UnitType, Edition, StartValues), TokenError<'_>> {
     let mut parts = token.split(';');
     let base = parts.next().unwrap_or_default();
-    let unit = UNITS
-        .iter()
-        .find(|unit| unit.description.token().as_str() == base)
+    let (unit, edition) = editions()
+        .find(|(unit, edition)| edition.token(unit.description).as_str() == base)
         .ok_or(TokenError::Unknown(token))?;
     let mut values = StartValues::default();
     for part in parts {
@@ -146,17 +162,19 @@ pub fn read_token(token: &str) -> Result<(&'static UnitType, StartValues), Token
         };
         values.set_by_reference(unit.description, reference, value)?;
     }
-    Ok((unit, values))
+    Ok((unit, edition, values))
 }
 
-/// All units with their tokens, for an error message.
+/// All editions of all units with their tokens, for an error message.
 struct KnownTokens;
 
 impl fmt::Display for KnownTokens {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str("expected")?;
-        UNITS.iter().try_for_each(|unit| {
-            write!(formatter, " {} for {}", unit.description.token().as_str(), unit.description.name)
+        editions().try_for_each(|(unit, edition)| {
+            let (token, name) = (edition.token(unit.description), unit.description.name);
+            let clocks = if edition == Edition::Clocked { " with clocks" } else { "" };
+            write!(formatter, " {} for {name}{clocks}", token.as_str())
         })
     }
 }
@@ -179,7 +197,8 @@ mod tests {
         let written =
             values(&[("controller.k2", 0.1 + 0.2), ("controller.k1", -1e-300), ("observer.kind", 4.0)])
                 .unwrap();
-        let (unit, read) = read_token(&written.token(CONTROLLER.description)).unwrap();
+        let token = written.token(CONTROLLER.description, Edition::Plain);
+        let (unit, _, read) = read_token(&token).unwrap();
         assert!(core::ptr::eq(unit.description, CONTROLLER.description));
         assert_eq!(read, written);
         let mut made = (unit.create)();
@@ -194,10 +213,35 @@ mod tests {
     }
 
     #[test]
-    fn without_start_values_the_token_is_the_units() {
-        let plain = CONTROLLER.description.token();
-        assert_eq!(StartValues::TABLE.token(CONTROLLER.description), plain.as_str());
-        assert_eq!(read_token(plain.as_str()).unwrap().1, *StartValues::TABLE);
+    fn every_edition_has_its_token_and_takes_start_values() {
+        let own = values(&[("controller.k2", 0.25)]).unwrap();
+        for (unit, edition) in editions() {
+            let description = unit.description;
+            let token = edition.token(description);
+            assert_eq!(StartValues::TABLE.token(description, edition), token.as_str());
+            let mut all = vec![StartValues::TABLE.clone()];
+            if core::ptr::eq(description, CONTROLLER.description) {
+                all.push(own.clone());
+            }
+            for values in all {
+                let (found, found_edition, read) = read_token(&values.token(description, edition)).unwrap();
+                assert!(core::ptr::eq(found.description, description));
+                assert_eq!((found_edition, read), (edition, values), "{}", description.name);
+            }
+        }
+    }
+
+    #[test]
+    fn values_go_before_others() {
+        let [system, user] = [
+            values(&[("controller.k1", 1.0), ("controller.k2", 2.0)]).unwrap(),
+            values(&[("controller.k2", 3.0), ("sample_time", 0.5)]).unwrap(),
+        ];
+        let both = system.clone().overridden_by(&user).unwrap();
+        let expected =
+            values(&[("controller.k1", 1.0), ("controller.k2", 3.0), ("sample_time", 0.5)]).unwrap();
+        assert_eq!(both, expected);
+        assert!(both.include(&user) && !both.include(&system) && both.include(StartValues::TABLE));
     }
 
     #[test]

@@ -1,7 +1,10 @@
 //! Which plant and which controller belong together, and how they are wired.
 
+use super::maglev_rig::OPERATING_SENSOR_VOLTAGE;
+use super::start_values::{StartValueError, StartValues};
+use super::variable::Kind;
 use super::{
-    LEVITATED_BALL_CONTROLLER, LEVITATED_BALL_PLANT, MAGLEV_RIG_CONTROLLER, MAGLEV_RIG_PLANT,
+    Description, LEVITATED_BALL_CONTROLLER, LEVITATED_BALL_PLANT, MAGLEV_RIG_CONTROLLER, MAGLEV_RIG_PLANT,
     MAGNETIC_BEARING_CONTROLLER, MAGNETIC_BEARING_PLANT, UnitType,
 };
 
@@ -16,7 +19,34 @@ pub struct System {
     pub sensing: &'static [(&'static str, &'static str)],
     /// Outputs of the controller and the inputs of the plant that take them.
     pub actuation: &'static [(&'static str, &'static str)],
+    /// With what the plant starts in a package of the system, where it differs from the plant's own table.
+    pub plant_starts: &'static [(&'static str, Start)],
+    /// The same of the controller, which also waits for the first values and refuses steps that are too long.
+    pub controller_starts: &'static [(&'static str, Start)],
+    /// What else is to be known of these start values; begins with a space.
+    pub remark: &'static str,
 }
+
+/// A start value in a package of a system.
+#[derive(Clone, Copy, Debug)]
+pub enum Start {
+    /// Name of an enumeration's item.
+    Item(&'static str),
+    /// What another variable of the unit starts with.
+    SameAs(&'static str),
+    /// So much more than in the unit's table.
+    Shifted(f64),
+}
+
+/// Masters of packages step both units at once, so that the command acts a step later.
+const HEARS_APPLIED_VOLTAGE: (&str, Start) = ("observer.voltage_source", Start::Item("applied"));
+
+/// Communication steps that a controller waits for the first values, which are zeros in some masters.
+const STEPS_TO_THE_FIRST_VALUES: f64 = 1.0;
+
+/// Longest communication step in a package \[s\]. With steps twice as long and a master that steps both units at once
+/// all three loops are lost.
+const LONGEST_STEP: f64 = 1e-3;
 
 pub static BEARING: System = System {
     name: "bearing",
@@ -29,6 +59,9 @@ pub static BEARING: System = System {
         ("voltage_measured", "voltage_applied"),
     ],
     actuation: &[("voltage", "voltage")],
+    plant_starts: &[],
+    controller_starts: &[HEARS_APPLIED_VOLTAGE],
+    remark: "",
 };
 
 pub static BALL: System = System {
@@ -43,7 +76,15 @@ pub static BALL: System = System {
         ("voltage_measured", "voltage_applied"),
     ],
     actuation: &[("voltage", "voltage")],
+    plant_starts: &[],
+    // The estimator of the paper needs a moving reference; in a package the reference rests until a tool drives it.
+    controller_starts: &[HEARS_APPLIED_VOLTAGE, ("observer.kind", Start::Item("polynomial_newton"))],
+    remark: " The observer is polynomial_newton, which needs no motion; the paper's, drem, needs a moving reference.",
 };
+
+/// The packaged rig's sensor is adjusted to read 0 V at the operating point, so that a wire at zero means no motion
+/// and an open reference keeps the ball where it is.
+const SENSOR_SHIFT: f64 = -OPERATING_SENSOR_VOLTAGE;
 
 pub static RIG: System = System {
     name: "rig",
@@ -51,6 +92,20 @@ pub static RIG: System = System {
     controller: &MAGLEV_RIG_CONTROLLER,
     sensing: &[("sensor_voltage_measured", "sensor_voltage"), ("voltage_measured", "voltage_applied")],
     actuation: &[("voltage", "voltage")],
+    plant_starts: &[
+        ("sensor_offset", Start::Shifted(SENSOR_SHIFT)),
+        ("sensor.minimum", Start::Shifted(SENSOR_SHIFT)),
+        ("sensor.maximum", Start::Shifted(SENSOR_SHIFT)),
+    ],
+    controller_starts: &[
+        HEARS_APPLIED_VOLTAGE,
+        ("sensor_offset", Start::Shifted(SENSOR_SHIFT)),
+        ("sensor_voltage", Start::Shifted(SENSOR_SHIFT)),
+        ("reference", Start::Shifted(SENSOR_SHIFT)),
+        // With the printed one, of the wrong sign, the estimate is off as soon as the voltage moves.
+        ("observer.input_gain", Start::SameAs("controller.input_gain")),
+    ],
+    remark: " The sensor is adjusted to read 0 V at 9 mm, where a reference of 0 V keeps the ball.",
 };
 
 /// All systems, in the order of their units.
@@ -60,6 +115,55 @@ impl System {
     /// The system called `name`.
     pub fn find(name: &str) -> Option<&'static Self> {
         SYSTEMS.iter().copied().find(|system| system.name == name)
+    }
+
+    /// Communication step that suits both units \[s\].
+    pub fn step_size(&self) -> f64 {
+        self.plant.description.step_size.min(self.controller.description.step_size)
+    }
+
+    /// Suggested end of a simulation \[s\].
+    pub fn stop_time(&self) -> f64 {
+        self.plant.description.stop_time.max(self.controller.description.stop_time)
+    }
+
+    /// With what a unit of this system starts in a package of it; any other unit as its table says.
+    pub fn start_values(&self, description: &'static Description) -> Result<StartValues, StartValueError> {
+        let mut values = StartValues::default();
+        let is = |unit: &UnitType| core::ptr::eq(unit.description, description);
+        let starts = if is(self.plant) {
+            self.plant_starts
+        } else if is(self.controller) {
+            self.controller_starts
+        } else {
+            &[]
+        };
+        for (name, start) in starts {
+            let number = start.number(description, name);
+            // What does not exist has no value, which is refused as such.
+            values.set(description, name, number.unwrap_or(f64::NAN))?;
+        }
+        if is(self.controller) {
+            values.set(description, "longest_step", LONGEST_STEP)?;
+            values.set(description, "start_delay", STEPS_TO_THE_FIRST_VALUES * self.step_size())?;
+        }
+        Ok(values)
+    }
+}
+
+impl Start {
+    /// The value, or nothing if the variable `name` or what this refers to does not exist.
+    fn number(self, description: &Description, name: &str) -> Option<f64> {
+        let (_, variable) = description.find(name)?;
+        match (self, variable.kind) {
+            (Self::Item(item), Kind::Enumeration(enumeration)) => {
+                let place = enumeration.items.iter().position(|(known, _)| *known == item)?;
+                Some((place + 1) as f64)
+            }
+            (Self::Item(_), _) => None,
+            (Self::SameAs(other), _) => Some(description.find(other)?.1.start),
+            (Self::Shifted(shift), _) => Some(variable.start + shift),
+        }
     }
 }
 
@@ -90,5 +194,36 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn packages_start_with_what_their_units_accept() {
+        for system in SYSTEMS {
+            let value = |unit: &UnitType, name: &str| {
+                let (reference, variable) = unit.description.find(name).unwrap();
+                (system.start_values(unit.description).unwrap().of(reference, variable), variable.kind)
+            };
+            let Start::Item(item) = HEARS_APPLIED_VOLTAGE.1 else { panic!("an item") };
+            let (number, Kind::Enumeration(enumeration)) = value(system.controller, HEARS_APPLIED_VOLTAGE.0)
+            else {
+                panic!("an enumeration")
+            };
+            assert_eq!(enumeration.items[number as usize - 1].0, item);
+            assert_eq!(value(system.controller, "start_delay").0, system.step_size());
+            assert!(value(system.controller, "longest_step").0 >= system.step_size());
+        }
+        let elsewhere = BEARING.start_values(BALL.controller.description).unwrap();
+        assert_eq!(elsewhere, *StartValues::TABLE);
+    }
+
+    #[test]
+    fn starts_that_do_not_exist_are_refused() {
+        let of = |start: Start| start.number(RIG.controller.description, "observer.kind");
+        assert_eq!(of(Start::Item("nonlinear")), Some(2.0));
+        assert_eq!(of(Start::Item("unlinear")), None);
+        assert_eq!(of(Start::SameAs("nothing")), None);
+        assert_eq!(Start::Shifted(1.0).number(RIG.controller.description, "nothing"), None);
+        let unknown = StartValues::default().set(RIG.controller.description, "observer.kind", f64::NAN);
+        assert!(unknown.is_err());
     }
 }

@@ -22,7 +22,7 @@ pub enum ValueError {
 }
 
 /// A number for people: with an exponent where it would have many zeros otherwise.
-struct Readable(f64);
+pub(super) struct Readable(pub(super) f64);
 
 impl fmt::Display for Readable {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -32,13 +32,28 @@ impl fmt::Display for Readable {
     }
 }
 
+/// As `f64::is_finite`, by the bits: no comparison of numbers, which a host may let trap.
+#[inline]
+pub fn is_finite(value: f64) -> bool {
+    const EXPONENT: u64 = 0x7FF << 52;
+    value.to_bits() & EXPONENT != EXPONENT
+}
+
+/// Whether `value` lies in the range, by the bits.
+#[inline]
+fn is_within(value: f64, (minimum, maximum): (f64, f64)) -> bool {
+    // The order of the bits knows two zeros.
+    let value = if value.to_bits() << 1 == 0 { 0.0 } else { value };
+    minimum.total_cmp(&value).is_le() && value.total_cmp(&maximum).is_le()
+}
+
 impl Variable {
     /// Whether `value` fits the variable's kind and range.
     #[inline]
     pub fn check(&self, value: f64) -> Result<(), ValueError> {
         let (minimum, maximum) = self.range;
         let name = self.name;
-        if !value.is_finite() {
+        if !is_finite(value) {
             return Err(ValueError::NotFinite { name, value, unit: self.unit() });
         }
         if let Kind::Enumeration(enumeration) = self.kind {
@@ -50,7 +65,7 @@ impl Variable {
                 Err(ValueError::NoItem { name, value, enumeration: enumeration.name, count })
             };
         }
-        if value < minimum || value > maximum {
+        if !is_within(value, self.range) {
             return Err(ValueError::OutOfRange { name, value, unit: self.unit(), minimum, maximum });
         }
         Ok(())
@@ -64,6 +79,26 @@ mod tests {
 
     static COLOUR: Enumeration =
         Enumeration { name: "Colour", description: "", items: &[("red", ""), ("blue", "")] };
+
+    #[test]
+    fn the_order_of_bits_is_that_of_numbers() {
+        let numbers = [f64::MIN, -1.5, -1.0, -5e-324, -0.0, 0.0, 5e-324, 1e-310, 1.0, 1.5, f64::MAX];
+        for value in numbers {
+            assert!(is_finite(value));
+            for (minimum, maximum) in numbers.iter().flat_map(|a| numbers.map(|b| (*a, b))) {
+                // No table has a range that begins or ends at the negative zero.
+                if [minimum, maximum].iter().all(|bound| bound.to_bits() != 1 << 63) {
+                    let expected = value >= minimum && value <= maximum;
+                    assert_eq!(is_within(value, (minimum, maximum)), expected, "{minimum} {value} {maximum}");
+                }
+            }
+        }
+        let rows = crate::unit::UNITS.iter().flat_map(|unit| unit.description.variables);
+        for (minimum, maximum) in rows.map(|row| row.range) {
+            assert!([minimum, maximum].iter().all(|bound| bound.to_bits() != 1 << 63));
+        }
+        assert!(![f64::NAN, -f64::NAN, f64::INFINITY, f64::NEG_INFINITY].into_iter().any(is_finite));
+    }
 
     #[test]
     fn messages_name_value_unit_and_expectation() {

@@ -3,20 +3,21 @@
 use core::cell::Cell;
 use core::ffi::c_void;
 use core::ptr::{null, null_mut};
-use std::ffi::CString;
 
 use maglev_fmu::fmi::fmi2::types::{FMI2_MODEL_EXCHANGE, fmi2CallbackFunctions};
 use maglev_fmu::fmi::fmi2::*;
 use maglev_fmu::fmi::fmi3::types::fmi3Boolean;
 use maglev_fmu::fmi::fmi3::*;
 use maglev_fmu::package::Capabilities;
-use maglev_fmu::unit::UNITS;
+use maglev_fmu::unit::{Edition, UNITS, editions};
 
-use super::harness::clocked::{Choices, co_simulation};
-use super::harness::{Component, OK, Phase, Recorder, Standard, description};
+use super::harness::clocked::{Choices, co_simulation_of};
+use super::harness::{Component, OK, Phase, Recorder, Standard, token};
 
 /// Whether something works on a unit.
 type Probe = fn(&str) -> bool;
+/// Whether something works on an edition of a unit.
+type EditionProbe = fn(Edition, &str) -> bool;
 
 fn stepped(standard: Standard, unit: &str) -> Component {
     Component::in_phase(standard, unit, Phase::Step)
@@ -83,27 +84,27 @@ unsafe extern "C-unwind" fn stop(
 }
 
 /// Calls back within a step, and ends it when asked to.
-fn calls_back(unit: &str) -> [bool; 2] {
+fn calls_back(edition: Edition, unit: &str) -> [bool; 2] {
     CALLS.set(0);
     let choices = Choices { early_return: true, intermediate_update: Some(stop), event_mode: false };
-    let component = Component::co_simulation(unit, choices);
+    let component = Component::co_simulation_of(edition, unit, choices);
     component.initialise(0.0);
     let step = component.step_to_event(0.0, 0.1);
     assert_eq!(step.status, OK);
     [CALLS.get() > 0, step.is_early]
 }
 
-fn has_events(unit: &str) -> bool {
+fn has_events(edition: Edition, unit: &str) -> bool {
     let recorder = Recorder::default();
-    is_made(co_simulation(unit, EVENTS, recorder.environment()))
+    is_made(co_simulation_of(edition, unit, EVENTS, recorder.environment()))
 }
 
 /// Whether a tick is evaluated before the end of the event iteration; otherwise the call has to be ignored.
-fn evaluates_discrete_states(unit: &str) -> bool {
-    if !has_events(unit) {
+fn evaluates_discrete_states(edition: Edition, unit: &str) -> bool {
+    if !has_events(edition, unit) {
         return false;
     }
-    let component = Component::co_simulation(unit, EVENTS);
+    let component = Component::co_simulation_of(edition, unit, EVENTS);
     component.initialise(0.0);
     assert_eq!(component.set_clock(component.clocks()[0], 1), OK);
     let before = component.saved_bytes();
@@ -112,8 +113,8 @@ fn evaluates_discrete_states(unit: &str) -> bool {
     component.saved_bytes() != before
 }
 
-fn is_schedulable(unit: &str) -> bool {
-    let token = CString::new(description(unit).token().as_str()).unwrap();
+fn is_schedulable(edition: Edition, unit: &str) -> bool {
+    let token = token(unit, edition);
     let (name, token) = (c"x".as_ptr(), token.as_ptr());
     // SAFETY: C strings, nothing else.
     is_made(unsafe {
@@ -124,19 +125,19 @@ fn is_schedulable(unit: &str) -> bool {
 #[test]
 fn flags_of_fmi3_tell_the_truth() {
     use Standard::Fmi3;
-    type Flag = (&'static str, fn(&Capabilities) -> bool, Probe);
+    type Flag = (&'static str, fn(&Capabilities) -> bool, EditionProbe);
     let flags: [Flag; 13] = [
-        ("canGetAndSetFMUState", |can| can.can_get_and_set_fmu_state, |unit| saves(Fmi3, unit)),
-        ("canSerializeFMUState", |can| can.can_serialize_fmu_state, |unit| serialises(Fmi3, unit)),
+        ("canGetAndSetFMUState", |can| can.can_get_and_set_fmu_state, |_, unit| saves(Fmi3, unit)),
+        ("canSerializeFMUState", |can| can.can_serialize_fmu_state, |_, unit| serialises(Fmi3, unit)),
         (
             "canHandleVariableCommunicationStepSize",
             |can| can.can_handle_variable_communication_step_size,
-            |unit| varies(Fmi3, unit),
+            |_, unit| varies(Fmi3, unit),
         ),
         (
             "providesDirectionalDerivatives",
             |can| can.provides_directional_derivatives,
-            |unit| {
+            |_, unit| {
                 works(Fmi3, unit, |c| unsafe {
                     fmi3GetDirectionalDerivative(c, null(), 0, null(), 0, null(), 0, null_mut(), 0)
                 })
@@ -145,7 +146,7 @@ fn flags_of_fmi3_tell_the_truth() {
         (
             "providesAdjointDerivatives",
             |can| can.provides_adjoint_derivatives,
-            |unit| {
+            |_, unit| {
                 works(Fmi3, unit, |c| unsafe {
                     fmi3GetAdjointDerivative(c, null(), 0, null(), 0, null(), 0, null_mut(), 0)
                 })
@@ -154,32 +155,36 @@ fn flags_of_fmi3_tell_the_truth() {
         (
             "providesPerElementDependencies",
             |can| can.provides_per_element_dependencies,
-            |unit| works(Fmi3, unit, |c| unsafe { fmi3GetNumberOfVariableDependencies(c, 2, &mut 0) }),
+            |_, unit| works(Fmi3, unit, |c| unsafe { fmi3GetNumberOfVariableDependencies(c, 2, &mut 0) }),
         ),
         (
             "maxOutputDerivativeOrder",
             |can| can.max_output_derivative_order > 0,
-            |unit| {
+            |_, unit| {
                 works(Fmi3, unit, |c| unsafe {
                     fmi3GetOutputDerivatives(c, null(), 0, null(), null_mut(), 0)
                 })
             },
         ),
-        ("providesIntermediateUpdate", |can| can.provides_intermediate_update, |unit| calls_back(unit)[0]),
+        (
+            "providesIntermediateUpdate",
+            |can| can.provides_intermediate_update,
+            |edition, unit| calls_back(edition, unit)[0],
+        ),
         (
             "canReturnEarlyAfterIntermediateUpdate",
             |can| can.can_return_early_after_intermediate_update,
-            |unit| calls_back(unit)[1],
+            |edition, unit| calls_back(edition, unit)[1],
         ),
         ("hasEventMode", |can| can.has_event_mode, has_events),
         (
             "mightReturnEarlyFromDoStep",
             |can| can.might_return_early_from_do_step,
-            |unit| {
-                if !has_events(unit) {
-                    return calls_back(unit)[1];
+            |edition, unit| {
+                if !has_events(edition, unit) {
+                    return calls_back(edition, unit)[1];
                 }
-                let component = Component::co_simulation(unit, EVENTS);
+                let component = Component::co_simulation_of(edition, unit, EVENTS);
                 component.initialise(0.0);
                 component.settle_event();
                 component.enter_step_mode();
@@ -193,11 +198,11 @@ fn flags_of_fmi3_tell_the_truth() {
         ),
         ("ScheduledExecution", |can| can.offers_scheduled_execution, is_schedulable),
     ];
-    for unit in UNITS {
-        let can = Capabilities::of(unit.description);
+    for (unit, edition) in editions() {
+        let can = Capabilities::of(unit.description, edition);
         for (flag, declared, probe) in flags {
             let name = unit.description.name;
-            assert_eq!(probe(name), declared(&can), "{name}: {flag}");
+            assert_eq!(probe(edition, name), declared(&can), "{name}, {edition:?}: {flag}");
         }
     }
 }
@@ -252,7 +257,7 @@ fn flags_of_fmi2_tell_the_truth() {
         ),
     ];
     for unit in UNITS {
-        let can = Capabilities::of(unit.description);
+        let can = Capabilities::of(unit.description, Edition::Plain);
         for (flag, declared, probe) in flags {
             let name = unit.description.name;
             assert_eq!(probe(name), declared(&can), "{name}: {flag}");
@@ -263,7 +268,7 @@ fn flags_of_fmi2_tell_the_truth() {
 #[test]
 fn model_exchange_is_offered_where_it_is_declared() {
     for unit in UNITS {
-        let token = CString::new(unit.description.token().as_str()).unwrap();
+        let token = token(unit.description.name, Edition::Plain);
         let (name, token) = (c"x".as_ptr(), token.as_ptr());
         let functions = fmi2CallbackFunctions {
             logger: None,

@@ -5,7 +5,7 @@ use maglev_fmu::fmi::fmi3::fmi3GetAdjointDerivative;
 use maglev_fmu::unit::variable::{Causality, Kind, Variability};
 use proptest::prelude::*;
 
-use super::harness::{BOTH, Component, ERROR, OK, Standard, plants};
+use super::harness::{BOTH, Component, DISCARD, ERROR, OK, Standard, plants};
 
 /// Derivative of `f` at 0 by central differences with Richardson extrapolation over three step sizes.
 fn slope(size: f64, f: impl Fn(f64) -> f64) -> f64 {
@@ -119,8 +119,11 @@ proptest! {
 
     #[test]
     fn initial_partial_derivatives_are_those_of_initialisation(shares in prop::collection::vec(0.8..1.2f64, 64)) {
-        for (standard, unit) in plants() {
-            let component = Component::new(standard, unit);
+        let instances = plants().flat_map(|(standard, unit)| {
+            [Component::new(standard, unit), Component::exchanged(standard, unit)]
+        });
+        for component in instances {
+            let unit = component.description.name;
             prop_assert_eq!(component.enter_initialization(0.0, None), OK);
             let knowns = reals(&component, |row| matches!(component.variable(row).causality, Causality::Parameter | Causality::Input));
             for (known, share) in knowns.iter().zip(&shares) {
@@ -131,8 +134,8 @@ proptest! {
                     0.0 => size,
                     start => start,
                 };
-                // An ideal sensor, whose reading has a derivative.
-                let value = if row.name == "sensor.resolution" { 0.0 } else { start * share };
+                // An ideal sensor, whose reading has a derivative, and in model exchange none that is read.
+                let value = if is_off(row.name) { 0.0 } else { start * share };
                 prop_assert_eq!(component.set_reference(*known, value), OK, "{} {}", row.name, value);
             }
             let found = reals(&component, |row| {
@@ -141,7 +144,7 @@ proptest! {
             });
             for known in &knowns {
                 let row = component.variable(*known);
-                if row.name == "sensor.resolution" {
+                if is_off(row.name) {
                     continue;
                 }
                 let value = component.get_reference(*known).1;
@@ -183,7 +186,7 @@ proptest! {
             let end = stepped(0.0);
             for output in reals(&end, |row| end.variable(row).causality == Causality::Output) {
                 let exact = end.output_slope(output);
-                if end.variable(output).variability == Variability::Discrete {
+                if is_of_the_last_step(unit, end.variable(output).name) {
                     prop_assert_eq!(exact, 0.0);
                     continue;
                 }
@@ -196,10 +199,56 @@ proptest! {
     }
 }
 
+/// Parameters of a sensor that are 0 where its output is to have derivatives.
+fn is_off(name: &str) -> bool {
+    name == "sensor.resolution" || name == "sensor.sample_time"
+}
+
+/// Outputs that tell of the last step in co-simulation and do not move until the next one.
+fn is_of_the_last_step(unit: &str, name: &str) -> bool {
+    name.ends_with("_measured") || name == "contact" || (unit, name) == ("MaglevRigPlant", "current")
+}
+
+#[test]
+fn derivatives_that_overflow_are_discarded_like_values() {
+    for standard in BOTH {
+        let ball = Component::new(standard, "LevitatedBallPlant");
+        ball.initialise(0.0);
+        ball.recorder.clear();
+        assert_eq!(ball.set("voltage", 1.7e308), OK);
+        let mut slope = [f64::NAN];
+        let current = ball.reference("current");
+        assert_eq!(ball.try_output_slope(current, &mut slope), DISCARD);
+        assert!(slope[0].is_nan(), "nothing is written");
+        let text = &ball.recorder.take()[0].text;
+        assert!(text.contains("derivative with respect to time of current"), "{text}");
+
+        let ball = Component::in_continuous_time(standard, "LevitatedBallPlant");
+        let [flux, acceleration, velocity] =
+            ["flux", "acceleration", "velocity"].map(|name| ball.reference(name));
+        assert_eq!(ball.set_states(&[0.0, 0.0, 1e200]), OK);
+        let mut sensitivity = [-7.0, -7.0];
+        let status = ball.directional(&[velocity, acceleration], &[flux], &[1e300], &mut sensitivity);
+        assert_eq!((status, sensitivity), (DISCARD, [-7.0, -7.0]));
+        let text = &ball.recorder.take()[0].text;
+        assert!(text.contains("derivative along the seed of acceleration"), "{text}");
+        if standard == Standard::Fmi3 {
+            let mut sensitivity = [-7.0];
+            let seed = [1e300];
+            // SAFETY: a live handle, arrays of one element.
+            let status = unsafe {
+                let result = sensitivity.as_mut_ptr();
+                fmi3GetAdjointDerivative(ball.handle, &acceleration, 1, &flux, 1, seed.as_ptr(), 1, result, 1)
+            };
+            assert_eq!((status, sensitivity), (DISCARD, [-7.0]));
+        }
+    }
+}
+
 #[test]
 fn parameters_keep_their_derivatives_after_initialisation() {
     for (standard, unit) in plants() {
-        let component = Component::new(standard, unit);
+        let component = Component::exchanged(standard, unit);
         assert_eq!(component.set("initial.velocity", 0.01), OK);
         assert_eq!(component.enter_initialization(0.0, None), OK);
         let knowns = reals(&component, |row| {

@@ -12,15 +12,15 @@ use maglev_fmu::fmi::fmi3::{
     fmi3FreeInstance, fmi3GetVersion, fmi3InstantiateCoSimulation, fmi3InstantiateModelExchange,
     fmi3InstantiateScheduledExecution,
 };
-use maglev_fmu::unit::UNITS;
+use maglev_fmu::unit::{Edition, editions};
 
 use super::harness::{
-    BOTH, CONTROLLER, Component, ERROR, PLANT, Recorder, Standard, all, description, fmi2_logger,
-    fmi3_logger, instantiate_with,
+    BOTH, CONTROLLER, Component, ERROR, PLANT, Recorder, Standard, all, fmi2_logger, fmi3_logger,
+    instantiate_with,
 };
 
 fn token(unit: &str) -> CString {
-    CString::new(description(unit).token().as_str()).unwrap()
+    super::harness::token(unit, Edition::Plain)
 }
 
 /// The one message about a failed instantiation.
@@ -68,9 +68,9 @@ fn a_wrong_token_is_answered_with_the_right_ones() {
                 };
                 let text = refusal(&recorder, handle);
                 assert!(text.contains(&format!("\"{}\"", wrong.to_str().unwrap_or(""))), "{text}");
-                for unit in UNITS {
-                    let known =
-                        format!("{} for {}", unit.description.token().as_str(), unit.description.name);
+                for (unit, edition) in editions() {
+                    let token = edition.token(unit.description);
+                    let known = format!("{} for {}", token.as_str(), unit.description.name);
                     assert!(text.contains(&known), "{text}");
                 }
             }

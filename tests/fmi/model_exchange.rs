@@ -91,16 +91,18 @@ fn discrete_outputs_change_at_events_only() {
         excite(&component);
         runge_kutta(&component, 0.0, 1e-3);
         assert_eq!(read(), before, "{unit}");
-        assert_eq!(component.enter_event_mode(), OK);
-        component.update_discrete_states();
-        assert_ne!(read(), before, "{unit}");
+        // The voltage that acts is no discrete value: it does so at once.
         assert_eq!(component.get("voltage_measured"), component.get("voltage"));
-        // The reading is that of the event, whatever is set afterwards.
-        let at_event = read();
-        assert_eq!(component.set("voltage", 0.25), OK);
-        component.update_discrete_states();
-        assert_eq!(component.enter_continuous_time(), OK);
-        assert_eq!(read(), at_event, "{unit}");
+        let Some((_, stop)) = component.description.find("initial.position") else { unreachable!() };
+        if component.description.find("contact").is_some() {
+            let mut states = component.states();
+            (states[0], states[1]) = (stop.range.0, 0.0);
+            assert_eq!(component.set_states(&states), OK);
+            assert_eq!(read(), before, "{unit}");
+            assert_eq!(component.enter_event_mode(), OK);
+            assert!(component.update_discrete_states());
+            assert_ne!(read(), before, "{unit}");
+        }
     }
 }
 

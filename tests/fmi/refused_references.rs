@@ -6,6 +6,7 @@ use maglev_fmu::fmi::fmi2::*;
 use maglev_fmu::fmi::fmi3::*;
 use maglev_fmu::unit::variable::Kind;
 
+use super::harness::clocked::{Choices, sampled_units};
 use super::harness::{Component, ERROR, OK, PLANT, Phase, Standard, all};
 use super::refused_values::OPEN;
 
@@ -108,9 +109,17 @@ fn wrong_types_are_named() {
 
 #[test]
 fn unknown_references_are_answered_with_the_largest() {
-    for (standard, unit) in all() {
-        let component = Component::in_phase(standard, unit, Phase::Step);
-        let clocks = if standard == Standard::Fmi3 { component.description.clocks().count() } else { 0 };
+    let plain = all().map(|(standard, unit)| (Component::in_phase(standard, unit, Phase::Step), 0));
+    // An importer that has read of the clocks is told of them, too.
+    let clocked = sampled_units().map(|unit| {
+        let component = Component::co_simulation(unit, Choices::default());
+        component.initialise(0.0);
+        component.recorder.clear();
+        let clocks = component.description.clocks().count();
+        (component, clocks)
+    });
+    for (component, clocks) in plain.chain(clocked) {
+        let standard = component.standard;
         let count = (component.description.variables.len() + clocks) as u32;
         for (_, _, call) in accessors(standard) {
             for unknown in [count, count + 1, u32::MAX] {

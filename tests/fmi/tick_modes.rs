@@ -4,6 +4,7 @@
 use core::ffi::c_void;
 
 use maglev_fmu::fmi::fmi3::types::fmi3Boolean;
+use maglev_fmu::unit::Edition;
 use maglev_fmu::unit::variable::{Causality, Kind};
 
 use super::harness::clocked::{Choices, sampled_units};
@@ -26,16 +27,19 @@ enum Mode {
     EventsWithoutEarlyReturn,
     /// The importer is called back at each tick within a step, and does nothing.
     Callbacks,
+    /// The same, of the edition without clocks.
+    PlainCallbacks,
     Scheduled,
 }
 
-const MODES: [Mode; 7] = [
+const MODES: [Mode; 8] = [
     Mode::Fmi2,
     Mode::Fmi3,
     Mode::Events,
     Mode::EventsAndClocks,
     Mode::EventsWithoutEarlyReturn,
     Mode::Callbacks,
+    Mode::PlainCallbacks,
     Mode::Scheduled,
 ];
 
@@ -65,6 +69,11 @@ fn instance(mode: Mode, unit: &str) -> Component {
         Mode::Callbacks => {
             Component::co_simulation(unit, Choices { intermediate_update: Some(ignore), ..none })
         }
+        Mode::PlainCallbacks => Component::co_simulation_of(
+            Edition::Plain,
+            unit,
+            Choices { intermediate_update: Some(ignore), ..none },
+        ),
         Mode::Scheduled => Component::scheduled(unit, None),
     }
 }

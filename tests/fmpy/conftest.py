@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from bearing import Loop
 from cosimulation import Fmu
-from packages import BEARING_UNITS, FMI_VERSIONS, UNITS, dist, fmu_path
+from packages import BEARING_UNITS, FMI_VERSIONS, UNITS, all_fmus, clocked_path, fmu_path
 
 # Same condition as in requirements.txt.
 if sys.platform != "linux" or platform.machine() != "x86_64" or sys.version_info >= (3, 15):
@@ -21,11 +21,12 @@ if sys.platform != "linux" or platform.machine() != "x86_64" or sys.version_info
 def pytest_configure() -> None:
     """Stop at once when there is nothing to test."""
     paths = [fmu_path(version, unit) for version in FMI_VERSIONS for unit in UNITS]
+    paths += [clocked_path(unit) for unit in UNITS if unit.endswith("Controller")]
     missing = [str(path) for path in paths if not path.is_file()]
     if missing:
         raise pytest.UsageError(
             f"no FMU at {', '.join(missing)}. Build them with `cargo run --release -- build`, "
-            "or set MAGLEV_DIST to the directory that holds fmi2/ and fmi3/."
+            "or set MAGLEV_DIST to the directory that holds fmi2/, fmi3/ and fmi3-clocked/."
         )
 
 
@@ -34,8 +35,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     if "fmi_version" in metafunc.fixturenames:
         metafunc.parametrize("fmi_version", FMI_VERSIONS, ids=lambda version: f"fmi{version}")
     if "any_fmu" in metafunc.fixturenames:
-        paths = sorted(dist().glob("fmi[23]/*.fmu"))
-        metafunc.parametrize("any_fmu", paths, ids=lambda path: f"{path.parent.name}-{path.stem}")
+        metafunc.parametrize("any_fmu", all_fmus(), ids=lambda path: f"{path.parent.name}-{path.stem}")
 
 
 @pytest.fixture

@@ -13,9 +13,20 @@ UNITS = BEARING_UNITS + BALL_UNITS
 
 
 def dist() -> Path:
-    """Directory with fmi2/ and fmi3/."""
+    """Directory with the directories of packages."""
     return Path(os.environ.get("MAGLEV_DIST", REPOSITORY / "dist")).resolve()
 
 
 def fmu_path(fmi_version: int, unit: str) -> Path:
+    """The package that every importer reads."""
     return dist() / f"fmi{fmi_version}" / f"{unit}.fmu"
+
+
+def clocked_path(unit: str) -> Path:
+    """The package of FMI 3.0 that shows the unit's clocks."""
+    return dist() / "fmi3-clocked" / f"{unit}.fmu"
+
+
+def all_fmus() -> list[Path]:
+    """Every package of a unit that there is."""
+    return sorted(dist().glob("fmi*/*.fmu"))

@@ -158,9 +158,12 @@ def test_bad_values_are_refused_with_reason(
     fmu.step(0.0, 1e-4)
 
 
-def test_no_step_with_equal_prefilters(fmi_version: int, open_fmu: Callable[[Path], Fmu], messages: list[str]) -> None:
+def test_no_start_with_equal_prefilters(fmi_version: int, open_fmu: Callable[[Path], Fmu], messages: list[str]) -> None:
     controller = open_fmu(fmu_path(fmi_version, CONTROLLER))
-    controller.initialize({"observer.prefilter[1]": 300.0})
     with pytest.raises(FMICallException):
-        controller.step(0.0, 1e-4)
+        controller.initialize({"observer.prefilter[1]": 300.0})
     assert "observer.prefilter[1]" in messages[-1] and "300 1/s" in messages[-1], messages
+    # Still in initialisation.
+    controller.set({"observer.prefilter[1]": 100.0})
+    controller.slave.exitInitializationMode()
+    controller.step(0.0, 1e-4)

@@ -12,7 +12,7 @@ import conformance
 import pytest
 from conformance import Outcome
 from importers import Limit, Task, systems
-from packages import dist
+from packages import all_fmus, dist
 
 # What requirements.txt installs everywhere else is less, see there.
 ALL_PROGRAMS = sys.platform == "linux" and platform.machine() == "x86_64" and sys.version_info < (3, 15)
@@ -29,7 +29,7 @@ def outcomes() -> dict[tuple[Task, Path], Outcome]:
 @pytest.mark.parametrize(
     ("task", "package"),
     CELLS,
-    ids=lambda part: part.stem if isinstance(part, Path) else conformance.label(part).strip("| "),
+    ids=lambda part: f"{part.parent.name}-{part.stem}" if isinstance(part, Path) else f"{part.program}-{part.what}",
 )
 def test_program_agrees(task: Task, package: Path, outcomes: dict[tuple[Task, Path], Outcome]) -> None:
     outcome = outcomes[task, package] = conformance.run(task, package)
@@ -55,8 +55,7 @@ def test_every_program_has_something_to_do() -> None:
     wanted = {task.program for task in [*conformance.UNIT_TASKS, *systems.TASKS]}
     if ALL_PROGRAMS:
         assert used == wanted
-    units = {path for path in dist().glob("fmi[23]/*.fmu")}
-    for fmu in units:
+    for fmu in all_fmus():
         declared = conformance.interfaces(fmu)
         tried = {task.interface for task, package in CELLS if package == fmu}
         assert tried == declared, fmu

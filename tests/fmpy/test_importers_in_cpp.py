@@ -8,11 +8,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-import pytest
 from bearing import CONTROLLER_OUTPUTS, SAMPLE_TIME, STATE, Loop
 from fmpy import read_model_description
-from importers.in_cpp import has_clocks, load_ecos
-from packages import CONTROLLER, FMI_VERSIONS, PLANT, fmu_path
+from importers.in_cpp import load_ecos
+from packages import CONTROLLER, PLANT, fmu_path
 
 STEPS = 1000
 WIRES = [
@@ -90,13 +89,8 @@ def through_libcosim() -> Trajectory:
     return rows
 
 
-# See the limits of ecos in scripts/importers/in_cpp.py.
-VERSIONS_FOR_ECOS = [version for version in FMI_VERSIONS if not has_clocks(fmu_path(version, CONTROLLER))]
-
-
-@pytest.mark.parametrize("version", VERSIONS_FOR_ECOS, ids=lambda version: f"fmi{version}")
-def test_ecos_equals_fmpy(version: int, through_fmpy: Callable[[int], Trajectory]) -> None:
-    assert through_ecos(version) == through_fmpy(version)
+def test_ecos_equals_fmpy(fmi_version: int, through_fmpy: Callable[[int], Trajectory]) -> None:
+    assert through_ecos(fmi_version) == through_fmpy(fmi_version)
 
 
 def test_libcosim_agrees_with_fmpy(through_fmpy: Callable[[int], Trajectory]) -> None:

@@ -59,6 +59,7 @@ INTERFACE = {
         "epsilon": Expected("real", "calculatedParameter", "1", None),
         "sensor.noise": parameter("m", 0.0),
         "sensor.resolution": parameter("m", 0.0),
+        "sensor.sample_time": parameter("s", 0.0),
         "sensor.seed": count(1),
         "process.flux_noise": parameter("Wb", 0.0),
         "map": choice("exact printed", "exact"),
@@ -123,6 +124,7 @@ INTERFACE = {
         "initial.flux": parameter("Wb", CARRYING_FLUX),
         "sensor.noise": parameter("A", 0.0),
         "sensor.resolution": parameter("A", 0.0),
+        "sensor.sample_time": parameter("s", 0.0),
         "sensor.seed": count(1),
     },
     BALL_CONTROLLER: {

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 from fmpy import read_model_description, simulate_fmu
-from packages import dist, fmu_path
+from packages import all_fmus, fmu_path
 
 
 class Run(NamedTuple):
@@ -55,7 +55,7 @@ RUNS = {
 
 def plants() -> list[Path]:
     """All FMUs for model exchange."""
-    paths = sorted(dist().glob("fmi[23]/*.fmu"))
+    paths = all_fmus()
     return [path for path in paths if read_model_description(path).modelExchange is not None]
 
 
@@ -106,3 +106,29 @@ def test_runs_by_default(path: Path) -> None:
     result = simulate_fmu(path, fmi_type="ModelExchange", stop_time=0.2)
     assert result["time"][-1] == pytest.approx(0.2)
     assert all(np.isfinite(result[name].astype(float)).all() for name in result.dtype.names)
+
+
+def test_the_rigs_current_flows_and_its_sensor_is_read(fmi_version: int) -> None:
+    """What follows from the inputs does so at each instant; a sensor with a sample time is read at its multiples."""
+    run = RUNS["rig"]
+    outputs = ["current", "voltage_measured", "sensor_voltage", "sensor_voltage_measured"]
+    readings: dict[float, np.ndarray] = {}
+    for sample_time in [0.0, 0.01]:
+        result = simulate_fmu(
+            fmu_path(fmi_version, run.unit),
+            fmi_type="ModelExchange",
+            stop_time=0.1,
+            output_interval=1e-3,
+            start_values={"voltage": 0.76, "sensor.noise": 1e-3, "sensor.sample_time": sample_time},
+            output=outputs,
+            record_events=False,
+        )
+        np.testing.assert_allclose(result["voltage_measured"], 0.76, rtol=1e-15)
+        np.testing.assert_allclose(result["current"], 0.798, rtol=1e-12)
+        readings[sample_time] = result["sensor_voltage_measured"] - result["sensor_voltage"]
+        held = np.diff(result["sensor_voltage_measured"]) == 0
+        if sample_time:
+            # Ten readings in 100 intervals.
+            assert 8 <= np.count_nonzero(~held) <= 11
+    assert np.all(readings[0.0] == 0.0)
+    assert np.any(np.abs(readings[0.01]) > 1e-4)

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from bearing import bits
 from fmpy import extract, read_model_description, simulate_fmu
-from fmpy.fmi3 import FMU3ScheduledExecution
+from fmpy.fmi3 import FMU3ScheduledExecution, FMU3Slave
 from fmuloader.fmi3 import Fmi3IntervalQualifier, Fmi3Slave
-from packages import CONTROLLER, dist, fmu_path
+from packages import CONTROLLER, FMI_VERSIONS, all_fmus, clocked_path, fmu_path
 
 STOP_TIME = 0.5  # s
 OUTPUTS = ["voltage", "estimate.velocity", "estimate.flux", "tick_time"]
@@ -28,7 +28,7 @@ def position(time: float) -> float:
 @pytest.fixture
 def controller(tmp_path: Path) -> Iterator[tuple[str, object]]:
     """Directory and description of the unpacked controller of FMI 3.0."""
-    path = fmu_path(3, CONTROLLER)
+    path = clocked_path(CONTROLLER)
     folder = extract(path, unzipdir=str(tmp_path / "fmu"))
     yield folder, read_model_description(path)
     shutil.rmtree(folder)
@@ -68,7 +68,7 @@ class Fmuloader:
     """fmuloader, which passes no callbacks."""
 
     def __init__(self, _: str, description: object) -> None:
-        self.unit = Fmi3Slave(fmu_path(3, CONTROLLER), model_identifier=CONTROLLER)
+        self.unit = Fmi3Slave(clocked_path(CONTROLLER), model_identifier=CONTROLLER)
         self.unit.instantiate_scheduled_execution("scheduled", instantiation_token=description.guid)
         self.put, self.get = self.unit.set_float64, self.unit.get_float64
         self.activate = self.unit.activate_model_partition
@@ -100,12 +100,12 @@ def scheduled(unit: Fmpy | Fmuloader, by_name: dict[str, int]) -> Trajectory:
     return rows
 
 
-def stepped(fmi_version: int, *, event_mode: bool, step_size: float = 1e-3) -> Trajectory:
+def stepped(path: Path, *, event_mode: bool, step_size: float = 1e-3) -> Trajectory:
     """Rows at the end of each step of fmpy's own simulation, that is after the tick at its start."""
     count = round(STOP_TIME / 1e-3)
     signal = np.array([(k * 1e-3, position(k * 1e-3)) for k in range(count + 1)], [("time", "f8"), ("position", "f8")])
     result = simulate_fmu(
-        str(fmu_path(fmi_version, CONTROLLER)),
+        str(path),
         stop_time=STOP_TIME,
         output_interval=step_size,
         input=hold(signal),
@@ -131,7 +131,7 @@ def test_schedulers_get_the_ticks_of_steps(importer: type, controller: tuple[str
     by_name = references(description)
     rows = scheduled(importer(folder, description), by_name)
     assert len(set(rows)) == len(rows) == 500
-    unit = Fmi3Slave(fmu_path(3, CONTROLLER), model_identifier=CONTROLLER)
+    unit = Fmi3Slave(clocked_path(CONTROLLER), model_identifier=CONTROLLER)
     unit.instantiate_co_simulation("stepped", instantiation_token=description.guid)
     unit.enter_initialization_mode(start_time=0.0)
     unit.exit_initialization_mode()
@@ -148,9 +148,10 @@ def test_schedulers_get_the_ticks_of_steps(importer: type, controller: tuple[str
 @pytest.mark.parametrize("step_size", [1e-3, 5e-4, 2.5e-4])
 def test_fmpy_gets_the_same_ticks_with_and_without_events(step_size: float) -> None:
     """With events every tick is sampled, whatever the step; the last row per tick is what holds until the next."""
-    without = stepped(3, event_mode=False, step_size=step_size)
-    assert without == stepped(2, event_mode=False, step_size=step_size)
-    with_events = stepped(3, event_mode=True, step_size=step_size)
+    without = stepped(clocked_path(CONTROLLER), event_mode=False, step_size=step_size)
+    for fmi_version in FMI_VERSIONS:
+        assert without == stepped(fmu_path(fmi_version, CONTROLLER), event_mode=False, step_size=step_size)
+    with_events = stepped(clocked_path(CONTROLLER), event_mode=True, step_size=step_size)
     # Rows of one tick are equal; with events the tick at the end of the simulation is run, too.
     ticks = list(dict.fromkeys(without))
     ticks_of_events = list(dict.fromkeys(with_events))
@@ -159,11 +160,30 @@ def test_fmpy_gets_the_same_ticks_with_and_without_events(step_size: float) -> N
     assert first is None, f"tick {first}"
 
 
-def test_all_controllers_can_be_scheduled() -> None:
-    for path in sorted(dist().glob("fmi3/*.fmu")):
+def test_clocked_packages_and_no_others_can_be_scheduled() -> None:
+    clocked = [path for path in all_fmus() if path.parent.name == "fmi3-clocked"]
+    controllers = {path.stem for path in all_fmus() if path.stem.endswith("Controller")}
+    assert {path.stem for path in clocked} == controllers
+    for path in all_fmus():
         description = read_model_description(path)
         clocks = {variable.name for variable in description.modelVariables if variable.type == "Clock"}
-        is_controller = path.stem.endswith("Controller")
-        assert (description.scheduledExecution is not None) == is_controller
-        assert clocks == ({"tick", "ticked"} if is_controller else set())
-        assert description.coSimulation.hasEventMode == is_controller
+        has_clocks = path in clocked
+        assert (description.scheduledExecution is not None) == has_clocks
+        assert clocks == ({"tick", "ticked"} if has_clocks else set())
+        assert bool(description.coSimulation.hasEventMode) == has_clocks
+
+
+def test_plain_package_refuses_events_and_names_the_other(tmp_path: Path) -> None:
+    path = fmu_path(3, CONTROLLER)
+    description = read_model_description(path)
+    messages = []
+    unit = FMU3Slave(
+        guid=description.guid,
+        unzipDirectory=extract(path, unzipdir=str(tmp_path)),
+        modelIdentifier=CONTROLLER,
+        instanceName="plain",
+    )
+    with pytest.raises(Exception, match="instantiate"):
+        unit.instantiate(eventModeUsed=True, logMessage=lambda *arguments: messages.append(arguments[-1].decode()))
+    assert any(f"fmi3-clocked/{CONTROLLER}.fmu" in message for message in messages), messages
+    unit.freeLibrary()

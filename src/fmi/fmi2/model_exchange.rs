@@ -13,7 +13,7 @@ pub unsafe extern "C-unwind" fn fmi2EnterEventMode(component: fmi2Component) -> 
     unsafe { enter(component, &may::ENTER_EVENT_MODE, |instance| instance.enter_event_mode()) }
 }
 
-/// Discrete transitions of an event. There are no time events, and one call settles everything.
+/// Discrete transitions of an event, of which one call settles everything. Readings of a sensor are time events.
 ///
 /// # Safety
 /// A live handle, used by one thread at a time; `event_info` is null or writable.
@@ -25,16 +25,16 @@ pub unsafe extern "C-unwind" fn fmi2NewDiscreteStates(
     // SAFETY: the caller's promise.
     unsafe {
         enter(component, &may::NEW_DISCRETE_STATES, |instance| {
-            let have_states_changed = instance.update_discrete_states()?.have_states_changed;
+            let end = instance.update_discrete_states()?;
             report(
                 event_info,
                 fmi2EventInfo {
                     new_discrete_states_needed: FMI2_FALSE,
                     terminate_simulation: FMI2_FALSE,
                     nominals_of_continuous_states_changed: FMI2_FALSE,
-                    values_of_continuous_states_changed: have_states_changed.into(),
-                    next_event_time_defined: FMI2_FALSE,
-                    next_event_time: 0.0,
+                    values_of_continuous_states_changed: end.have_states_changed.into(),
+                    next_event_time_defined: end.next_event_time.is_some().into(),
+                    next_event_time: end.next_event_time.unwrap_or_default(),
                 },
             );
             Ok(())

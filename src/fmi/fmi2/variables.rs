@@ -5,7 +5,7 @@ use super::legality as may;
 use super::types::*;
 use crate::fmi::FmiVersion;
 use crate::fmi::access::DataType;
-use crate::fmi::boundary::{enter, input, output};
+use crate::fmi::boundary::{enter, enter_to_copy, input, output};
 use crate::unit::variable::Kind;
 
 const REAL: DataType =
@@ -21,7 +21,8 @@ const STRING: DataType = DataType { name: "a String", carries: |_| false, standa
 
 /// A getter and a setter of one data type.
 macro_rules! accessors {
-    ($get:ident $get_rule:ident, $set:ident $set_rule:ident, $type:ty, $data_type:ident, $from:expr, $into:expr) => {
+    ($enter:ident, $get:ident $get_rule:ident, $set:ident $set_rule:ident, $type:ty, $data_type:ident,
+     $from:expr, $into:expr) => {
         /// # Safety
         /// A live handle, used by one thread at a time; both arrays hold `count` elements.
         #[unsafe(no_mangle)]
@@ -33,7 +34,7 @@ macro_rules! accessors {
         ) -> fmi2Status {
             // SAFETY: the caller's promise.
             unsafe {
-                enter(component, &may::$get_rule, |instance| {
+                $enter(component, &may::$get_rule, |instance| {
                     let references = input(references, count, "vr")?;
                     instance.get(&$data_type, references, output(values, count, "value")?, $from)
                 })
@@ -51,7 +52,7 @@ macro_rules! accessors {
         ) -> fmi2Status {
             // SAFETY: the caller's promise.
             unsafe {
-                enter(component, &may::$set_rule, |instance| {
+                $enter(component, &may::$set_rule, |instance| {
                     let references = input(references, count, "vr")?;
                     instance.set(&$data_type, references, input(values, count, "value")?, $into)
                 })
@@ -60,11 +61,11 @@ macro_rules! accessors {
     };
 }
 
-accessors!(fmi2GetReal GET_REAL, fmi2SetReal SET_REAL, fmi2Real, REAL, |value| value, |value| value);
-accessors!(fmi2GetInteger GET_INTEGER, fmi2SetInteger SET_INTEGER, fmi2Integer, INTEGER,
+accessors!(enter_to_copy, fmi2GetReal GET_REAL, fmi2SetReal SET_REAL, fmi2Real, REAL, |value| value, |value| value);
+accessors!(enter, fmi2GetInteger GET_INTEGER, fmi2SetInteger SET_INTEGER, fmi2Integer, INTEGER,
     |value| value as fmi2Integer, f64::from);
-accessors!(fmi2GetBoolean GET_BOOLEAN, fmi2SetBoolean SET_BOOLEAN, fmi2Boolean, BOOLEAN,
+accessors!(enter, fmi2GetBoolean GET_BOOLEAN, fmi2SetBoolean SET_BOOLEAN, fmi2Boolean, BOOLEAN,
     |value| fmi2Boolean::from(value != 0.0), |value| f64::from(u8::from(value != FMI2_FALSE)));
 // No unit has strings, so nothing is ever converted.
-accessors!(fmi2GetString GET_STRING, fmi2SetString SET_STRING, fmi2String, STRING,
+accessors!(enter, fmi2GetString GET_STRING, fmi2SetString SET_STRING, fmi2String, STRING,
     |_| core::ptr::null(), |_| 0.0);

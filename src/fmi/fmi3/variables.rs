@@ -6,7 +6,7 @@ use super::types::*;
 use crate::fmi::CallError;
 use crate::fmi::FmiVersion;
 use crate::fmi::access::DataType;
-use crate::fmi::boundary::{enter, input, output};
+use crate::fmi::boundary::{enter, enter_to_copy, input, output};
 use crate::unit::variable::Kind;
 
 /// All variables are scalars: one value per reference.
@@ -17,7 +17,7 @@ fn require_length(got: usize, expected: usize) -> Result<(), CallError> {
 
 /// A getter and a setter of one data type.
 macro_rules! accessors {
-    ($name:literal, $carries:expr, $get:ident $get_rule:ident, $set:ident $set_rule:ident, $type:ty,
+    ($enter:ident, $name:literal, $carries:expr, $get:ident $get_rule:ident, $set:ident $set_rule:ident, $type:ty,
      $from:expr, $into:expr) => {
         /// # Safety
         /// A live handle, used by one thread at a time; the arrays hold as many elements as the counts say.
@@ -31,7 +31,7 @@ macro_rules! accessors {
         ) -> fmi3Status {
             // SAFETY: the caller's promise.
             unsafe {
-                enter(instance, &may::$get_rule, |instance| {
+                $enter(instance, &may::$get_rule, |instance| {
                     require_length(value_count, count)?;
                     let references = input(references, count, "valueReferences")?;
                     let values = output(values, count, "values")?;
@@ -57,7 +57,7 @@ macro_rules! accessors {
         ) -> fmi3Status {
             // SAFETY: the caller's promise.
             unsafe {
-                enter(instance, &may::$set_rule, |instance| {
+                $enter(instance, &may::$set_rule, |instance| {
                     require_length(value_count, count)?;
                     let references = input(references, count, "valueReferences")?;
                     let values = input(values, count, "values")?;
@@ -76,18 +76,18 @@ macro_rules! accessors {
 /// A data type that no variable has, so nothing is ever converted.
 macro_rules! absent {
     ($name:literal, $get:ident $get_rule:ident, $set:ident $set_rule:ident, $type:ty, $zero:expr) => {
-        accessors!($name, |_| false, $get $get_rule, $set $set_rule, $type, |_| $zero, |_| 0.0);
+        accessors!(enter, $name, |_| false, $get $get_rule, $set $set_rule, $type, |_| $zero, |_| 0.0);
     };
 }
 
-accessors!("a Float64", |kind| matches!(kind, Kind::Real(_)),
+accessors!(enter_to_copy, "a Float64", |kind| matches!(kind, Kind::Real(_)),
     fmi3GetFloat64 GET_FLOAT64, fmi3SetFloat64 SET_FLOAT64, f64, |value| value, |value| value);
-accessors!("an Int32", |kind| matches!(kind, Kind::Integer),
+accessors!(enter, "an Int32", |kind| matches!(kind, Kind::Integer),
     fmi3GetInt32 GET_INT32, fmi3SetInt32 SET_INT32, i32, |value| value as i32, f64::from);
 // A number beyond 2^53 loses digits, but is no item of any enumeration either.
-accessors!("an Int64 or Enumeration", |kind| matches!(kind, Kind::Enumeration(_)),
+accessors!(enter, "an Int64 or Enumeration", |kind| matches!(kind, Kind::Enumeration(_)),
     fmi3GetInt64 GET_INT64, fmi3SetInt64 SET_INT64, i64, |value| value as i64, |value| value as f64);
-accessors!("a Boolean", |kind| matches!(kind, Kind::Boolean),
+accessors!(enter, "a Boolean", |kind| matches!(kind, Kind::Boolean),
     fmi3GetBoolean GET_BOOLEAN, fmi3SetBoolean SET_BOOLEAN, fmi3Boolean,
     |value| fmi3Boolean::from(value != 0.0), |value| f64::from(u8::from(value != FMI3_FALSE)));
 absent!("a Float32", fmi3GetFloat32 GET_FLOAT32, fmi3SetFloat32 SET_FLOAT32, f32, 0.0);

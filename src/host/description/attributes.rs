@@ -64,6 +64,8 @@ fn wrong(element: &str, attribute: &'static str, text: &str, expected: &'static 
     HostError::Attribute { element: element.to_owned(), attribute, text: text.to_owned(), expected }
 }
 
+const ELEMENT: &str = "DefaultExperiment";
+
 /// `DefaultExperiment`, the same in both versions.
 #[derive(Deserialize, Default)]
 pub(super) struct Experiment {
@@ -79,13 +81,29 @@ pub(super) struct Experiment {
 
 impl Experiment {
     pub(super) fn read(&self) -> Result<DefaultExperiment> {
-        let real =
-            |attribute, text: &Option<String>| optional_real("DefaultExperiment", attribute, text.as_deref());
+        // The schemas' xs:double has NaN and INF, but nothing can be simulated with them.
+        let real = |attribute, text: &Option<String>, expected, fits: &dyn Fn(f64) -> bool| {
+            let value = optional_real(ELEMENT, attribute, text.as_deref())?;
+            let is_refused = |number: f64| !(number.is_finite() && fits(number));
+            match (value, text) {
+                (Some(number), Some(text)) if is_refused(number) => {
+                    Err(wrong(ELEMENT, attribute, text, expected))
+                }
+                _ => Ok(value),
+            }
+        };
+        let start_time = real("startTime", &self.start_time, "a finite number", &|_| true)?;
+        let start = start_time.unwrap_or(0.0);
+        let not_before = "a finite number that is not below startTime";
         Ok(DefaultExperiment {
-            start_time: real("startTime", &self.start_time)?,
-            stop_time: real("stopTime", &self.stop_time)?,
-            tolerance: real("tolerance", &self.tolerance)?,
-            step_size: real("stepSize", &self.step_size)?,
+            start_time,
+            stop_time: real("stopTime", &self.stop_time, not_before, &|time| time >= start)?,
+            tolerance: real("tolerance", &self.tolerance, "a finite number, 0 or greater", &|value| {
+                value >= 0.0
+            })?,
+            step_size: real("stepSize", &self.step_size, "a finite number greater than 0", &|step| {
+                step > 0.0
+            })?,
         })
     }
 }

@@ -1,6 +1,7 @@
 //! The XML schema of FMI 2.0, as far as co-simulation needs it.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use serde::Deserialize;
 
@@ -114,7 +115,7 @@ pub(super) fn parse(xml: &str) -> Result<ModelDescription> {
     let mut enumerations = HashMap::new();
     for simple in document.types.map(|types| types.simple).unwrap_or_default() {
         if let Some(unit) = simple.real.and_then(|real| real.unit) {
-            type_units.insert(simple.name.clone(), unit);
+            type_units.insert(simple.name.clone(), Arc::from(unit));
         }
         if let Some(enumeration) = simple.enumeration {
             let items = attributes::items(&simple.name, enumeration.items)?;
@@ -153,7 +154,7 @@ fn co_simulation(interface: Interface) -> Result<CoSimulation> {
     })
 }
 
-fn variable(scalar: ScalarVariable, type_units: &HashMap<String, String>) -> Result<Variable> {
+fn variable(scalar: ScalarVariable, type_units: &HashMap<String, Arc<str>>) -> Result<Variable> {
     let element = format!("the variable `{}`", scalar.name);
     let (kind, storage, value) = [
         (Kind::Real, Storage::Float64, scalar.real),
@@ -181,9 +182,9 @@ fn variable(scalar: ScalarVariable, type_units: &HashMap<String, String>) -> Res
             scalar.variability.as_deref(),
             Variability::Continuous,
         )?,
-        start: value.start,
-        unit: value.unit.or_else(inherited),
-        declared_type: value.declared_type,
+        start: value.start.map(Arc::from),
+        unit: value.unit.map(Arc::from).or_else(inherited),
+        declared_type: value.declared_type.map(Arc::from),
         description: scalar.description,
         is_array: false,
         name: scalar.name,

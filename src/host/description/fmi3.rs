@@ -1,13 +1,15 @@
 //! The XML schema of FMI 3.0, as far as co-simulation needs it.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
-use crate::host::error::Result;
+use crate::host::error::{HostError, Result};
 
 use super::attributes::{self, Experiment, Item};
+use super::elements::{Known, known};
 use super::{CoSimulation, FmiVersion, Kind, ModelDescription, Storage, Variability, Variable};
 
 #[derive(Deserialize)]
@@ -46,7 +48,7 @@ struct Interface {
 
 #[derive(Deserialize)]
 struct Types {
-    #[serde(rename = "$value", default)]
+    #[serde(rename = "$value", default, deserialize_with = "known")]
     all: Vec<TypeElement>,
 }
 
@@ -79,7 +81,7 @@ struct EnumerationType {
 
 #[derive(Deserialize)]
 struct Variables {
-    #[serde(rename = "$value", default)]
+    #[serde(rename = "$value", default, deserialize_with = "known")]
     all: Vec<VariableElement>,
 }
 
@@ -103,6 +105,18 @@ enum VariableElement {
     /// Whatever a later edition adds.
     #[serde(other)]
     Unknown,
+}
+
+impl Known for TypeElement {
+    fn is_known(&self) -> bool {
+        !matches!(self, Self::Other)
+    }
+}
+
+impl Known for VariableElement {
+    fn is_known(&self) -> bool {
+        !matches!(self, Self::Unknown)
+    }
 }
 
 #[derive(Deserialize)]
@@ -153,7 +167,7 @@ pub(super) fn parse(xml: &str) -> Result<ModelDescription> {
     for element in document.types.map(|types| types.all).unwrap_or_default() {
         match element {
             TypeElement::Float(FloatType { name, unit: Some(unit) }) => {
-                type_units.insert(name, unit);
+                type_units.insert(name, Arc::from(unit));
             }
             TypeElement::Enumeration(EnumerationType { name, items }) => {
                 let items = attributes::items(&name, items)?;
@@ -163,8 +177,11 @@ pub(super) fn parse(xml: &str) -> Result<ModelDescription> {
         }
     }
     let mut variables = Vec::with_capacity(document.variables.all.len());
+    let mut seen = HashMap::new();
     for element in document.variables.all {
+        let start = variables.len();
         append(element, &type_units, &mut variables)?;
+        check_reference(&variables, start, &mut seen)?;
     }
     Ok(ModelDescription {
         fmi_version: FmiVersion::Three,
@@ -199,7 +216,7 @@ fn co_simulation(interface: Interface) -> Result<CoSimulation> {
 /// Appends the variable and its aliases.
 fn append(
     element: VariableElement,
-    type_units: &HashMap<String, String>,
+    type_units: &HashMap<String, Arc<str>>,
     variables: &mut Vec<Variable>,
 ) -> Result<()> {
     let Some((kind, storage, attributes)) = classify(element) else { return Ok(()) };
@@ -213,7 +230,8 @@ fn append(
         let values: Vec<_> = attributes.start_elements.iter().map(|start| start.value.as_str()).collect();
         (!values.is_empty()).then(|| values.join(" "))
     };
-    let variable = Variable {
+    // Each alias has a name and a description of its own, and shares everything else.
+    let value = Variable {
         value_reference: attributes::number(
             &element,
             "valueReference",
@@ -224,22 +242,32 @@ fn append(
         storage,
         causality: attributes::causality(&element, attributes.causality.as_deref())?,
         variability: attributes::variability(&element, attributes.variability.as_deref(), default)?,
-        start: attributes.start.or_else(from_elements),
-        unit: attributes.unit.or_else(inherited),
-        declared_type: attributes.declared_type,
-        description: attributes.description,
+        start: attributes.start.or_else(from_elements).map(Arc::from),
+        unit: attributes.unit.map(Arc::from).or_else(inherited),
+        declared_type: attributes.declared_type.map(Arc::from),
+        description: None,
         is_array: !attributes.dimensions.is_empty(),
-        name: attributes.name,
+        name: String::new(),
     };
-    let aliases = attributes.aliases.into_iter().map(|alias| Variable {
-        name: alias.name,
-        description: alias.description,
-        ..variable.clone()
-    });
-    let aliases: Vec<_> = aliases.collect();
-    variables.push(variable);
-    variables.extend(aliases);
+    let own = (attributes.name, attributes.description);
+    let aliases = attributes.aliases.into_iter().map(|alias| (alias.name, alias.description));
+    let names = std::iter::once(own).chain(aliases);
+    variables.extend(names.map(|(name, description)| Variable { name, description, ..value.clone() }));
     Ok(())
+}
+
+/// FMI 3.0 forbids what FMI 2.0 calls an alias: "The valueReference must be unique for all variables of an FMU"
+/// (section 2.4.7.4). Its own aliases are elements of their variable.
+fn check_reference(variables: &[Variable], start: usize, seen: &mut HashMap<u32, usize>) -> Result<()> {
+    let Some(variable) = variables.get(start) else { return Ok(()) };
+    match seen.insert(variable.value_reference, start) {
+        None => Ok(()),
+        Some(first) => Err(HostError::Duplicate {
+            what: format!("the value reference {}", variable.value_reference),
+            first: format!("`{}`", variables[first].name.escape_debug()),
+            second: format!("`{}`", variable.name.escape_debug()),
+        }),
+    }
 }
 
 fn classify(element: VariableElement) -> Option<(Kind, Storage, Attributes)> {

@@ -1,6 +1,7 @@
 //! `modelDescription.xml` of FMI 2.0 and FMI 3.0 in one form.
 
 mod attributes;
+mod elements;
 mod fmi2;
 mod fmi3;
 mod variable;
@@ -10,6 +11,8 @@ use std::collections::HashMap;
 use serde::Deserialize;
 
 use super::error::{HostError, Result};
+use super::limits::Limits;
+use crate::causes::with_causes;
 use crate::fmi::FmiVersion;
 
 pub use variable::{Causality, Kind, Storage, Variability, Variable};
@@ -73,25 +76,30 @@ struct Root {
 }
 
 impl ModelDescription {
+    /// Parses the text of a `modelDescription.xml` within the default [`Limits`].
+    ///
+    /// # Errors
+    /// As [`ModelDescription::parse_within`].
+    pub fn parse(xml: &str) -> Result<Self> {
+        Self::parse_within(xml, &Limits::default())
+    }
+
     /// Parses the text of a `modelDescription.xml`.
     ///
     /// # Errors
     /// [`HostError::Description`] if the XML is not well-formed or incomplete, [`HostError::UnsupportedVersion`],
-    /// and [`HostError::Attribute`] if a number, a flag or a keyword is not one.
-    pub fn parse(xml: &str) -> Result<Self> {
+    /// [`HostError::Attribute`] if a number, a flag or a keyword is not one, [`HostError::Duplicate`] and
+    /// [`HostError::OverLimit`].
+    pub fn parse_within(xml: &str, limits: &Limits) -> Result<Self> {
         let xml = xml.trim_start_matches('\u{feff}');
+        elements::check_number(xml, limits)?;
         let version = read::<Root>(xml)?.fmi_version;
         let mut description = match version.trim().split('.').next() {
             Some("2") => fmi2::parse(xml),
             Some("3") => fmi3::parse(xml),
             _ => Err(HostError::UnsupportedVersion { version }),
         }?;
-        description.index = description
-            .variables
-            .iter()
-            .enumerate()
-            .map(|(place, variable)| (variable.name.clone(), place))
-            .collect();
+        description.index = index(&description.variables)?;
         Ok(description)
     }
 
@@ -110,7 +118,7 @@ impl ModelDescription {
     /// The items of the variable's enumeration type; empty for other kinds.
     pub fn enumeration_items(&self, variable: &Variable) -> &[EnumerationItem] {
         let declared = variable.declared_type.as_ref().filter(|_| variable.kind == Kind::Enumeration);
-        declared.and_then(|name| self.enumerations.get(name)).map_or(&[], Vec::as_slice)
+        declared.and_then(|name| self.enumerations.get(&**name)).map_or(&[], Vec::as_slice)
     }
 
     /// The items of the enumeration type called `type_name`, `None` if there is no such type.
@@ -136,5 +144,20 @@ impl ModelDescription {
 }
 
 fn read<'xml, T: Deserialize<'xml>>(xml: &'xml str) -> Result<T> {
-    quick_xml::de::from_str(xml).map_err(|error| HostError::Description { reason: error.to_string() })
+    quick_xml::de::from_str(xml).map_err(|error| HostError::Description { reason: with_causes(&error) })
+}
+
+/// Places by name. Both standards ask for unique names: a second variable could not be reached by its own.
+fn index(variables: &[Variable]) -> Result<HashMap<String, usize>> {
+    let mut index = HashMap::with_capacity(variables.len());
+    for (place, variable) in variables.iter().enumerate() {
+        if let Some(first) = index.insert(variable.name.clone(), place) {
+            return Err(HostError::Duplicate {
+                what: format!("the name `{}`", variable.name.escape_debug()),
+                first: variables[first].reference_text(),
+                second: variable.reference_text(),
+            });
+        }
+    }
+    Ok(index)
 }

@@ -1,6 +1,7 @@
 //! One variable of an FMU.
 
 use std::fmt;
+use std::sync::Arc;
 
 /// What a value means, the same in both versions of the standard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,7 +62,8 @@ pub enum Variability {
     Continuous,
 }
 
-/// One variable of an FMU.
+/// One variable of an FMU. Texts are shared with its aliases and with all variables of its type, so that a small file
+/// cannot ask for much memory.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variable {
     pub name: String,
@@ -72,11 +74,18 @@ pub struct Variable {
     pub causality: Causality,
     pub variability: Variability,
     /// As written in the XML; the values of an array are separated by spaces.
-    pub start: Option<String>,
+    pub start: Option<Arc<str>>,
     /// Unit of the variable, or of its declared type.
-    pub unit: Option<String>,
-    pub declared_type: Option<String>,
+    pub unit: Option<Arc<str>>,
+    pub declared_type: Option<Arc<str>>,
     pub description: Option<String>,
     /// FMI 3.0: the variable has dimensions, and the host cannot access it.
     pub is_array: bool,
+}
+
+impl Variable {
+    /// For an error about two variables of the same name.
+    pub(super) fn reference_text(&self) -> String {
+        format!("that of value reference {} ({})", self.value_reference, self.storage)
+    }
 }

@@ -12,23 +12,25 @@ use quick_xml::se::Serializer;
 use serde::Serialize;
 pub(super) use terminals_and_icons::terminals_and_icons;
 
-use super::{FmiVersion, GenerationTime, PackageError};
+use super::{FmiVersion, Form, GenerationTime, PackageError};
 use crate::unit::{Description, StartValues};
 
-/// The model description of a unit. `time` is left out of the file that is checked in.
+/// The model description of a unit in one form. `time` is left out of the file that is checked in.
 pub fn model_description(
     description: &'static Description,
     start_values: &StartValues,
-    version: FmiVersion,
+    form: Form,
     time: Option<GenerationTime>,
 ) -> Result<String, PackageError> {
+    let Form { version, edition } = form;
     let text = match version {
         FmiVersion::Two => {
             document("fmiModelDescription", &fmi2::ModelDescription::new(description, start_values, time))
         }
-        FmiVersion::Three => {
-            document("fmiModelDescription", &fmi3::ModelDescription::new(description, start_values, time))
-        }
+        FmiVersion::Three => document(
+            "fmiModelDescription",
+            &fmi3::ModelDescription::new(description, edition, start_values, time),
+        ),
     };
     text.map_err(|source| PackageError::ModelDescription { unit: description.name, version, source })
 }

@@ -1,8 +1,8 @@
 //! What the standards derive from a variable's causality and variability.
 
 use crate::package::Capabilities;
-use crate::unit::Description;
 use crate::unit::variable::{Causality, DependencyKind, Kind, Variability, Variable};
+use crate::unit::{Description, Edition};
 
 /// The attribute `causality`.
 pub fn causality(variable: &Variable) -> &'static str {
@@ -49,7 +49,7 @@ pub fn range(variable: &Variable) -> [Option<String>; 2] {
 /// FMI 3.0, attribute `intermediateUpdate`: whether an importer may give the variable a value within a step. A sampled
 /// unit calls the importer back before each tick within a step, which then reads its continuous inputs.
 pub fn may_be_set_within_a_step(description: &Description, variable: &Variable) -> bool {
-    Capabilities::of(description).provides_intermediate_update
+    Capabilities::of(description, Edition::Plain).provides_intermediate_update
         && (variable.causality, variable.variability) == (Causality::Input, Variability::Continuous)
 }
 

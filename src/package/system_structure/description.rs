@@ -1,18 +1,15 @@
-//! `SystemStructure.ssd` (SSP 1.0.1, section 5).
+//! `SystemStructure.ssd` (SSP 1.0.1 and 2.0, section 5).
 
 use serde::Serialize;
 
-use super::{COMMON, Component, DESCRIPTION, VERSION};
-use crate::package::model_description::{GENERATION_TOOL, real};
+use super::connectors::{Connections, Connectors, connectable};
+use super::experiment::{COSIM_NAMESPACE, DefaultExperiment, OMSIMULATOR_NAMESPACE, SystemAnnotations};
+use super::{COMMON, Component, DESCRIPTION, SystemForm};
+use crate::package::model_description::GENERATION_TOOL;
 use crate::package::{GenerationTime, licenses};
-use crate::unit::Description;
 use crate::unit::quantity::UnitOfMeasure;
 use crate::unit::system::System as UnitSystem;
-use crate::unit::variable::{Causality, Kind, Variable};
-
-/// Annotations that libcosim reads: the standard has no communication step size.
-const STEP_SIZE_ANNOTATION: &str = "com.opensimulationplatform";
-const STEP_SIZE_NAMESPACE: &str = "http://opensimulationplatform.com/SSP/OSPAnnotations";
+use crate::unit::variable::{Kind, Variable};
 
 #[derive(Serialize)]
 pub struct SystemStructureDescription {
@@ -22,7 +19,9 @@ pub struct SystemStructureDescription {
     common_namespace: &'static str,
     /// Declared here: libcosim takes a declaration on the annotation for part of it.
     #[serde(rename = "@xmlns:osp")]
-    step_size_namespace: &'static str,
+    cosim_namespace: &'static str,
+    #[serde(rename = "@xmlns:oms")]
+    omsimulator_namespace: &'static str,
     #[serde(rename = "@version")]
     version: &'static str,
     #[serde(rename = "@name")]
@@ -49,10 +48,14 @@ struct System {
     name: &'static str,
     #[serde(rename = "@description")]
     description: String,
+    #[serde(rename = "ssd:Connectors", skip_serializing_if = "Option::is_none")]
+    connectors: Option<Connectors>,
     #[serde(rename = "ssd:Elements")]
     elements: Elements,
     #[serde(rename = "ssd:Connections")]
     connections: Connections,
+    #[serde(rename = "ssd:Annotations")]
+    annotations: SystemAnnotations,
 }
 
 #[derive(Serialize)]
@@ -79,48 +82,6 @@ struct ComponentElement {
     geometry: ElementGeometry,
     #[serde(rename = "ssd:ParameterBindings")]
     bindings: ParameterBindings,
-}
-
-#[derive(Serialize)]
-struct Connectors {
-    #[serde(rename = "ssd:Connector")]
-    connectors: Vec<Connector>,
-}
-
-#[derive(Serialize)]
-struct Connector {
-    #[serde(rename = "@name")]
-    name: &'static str,
-    #[serde(rename = "@description")]
-    description: &'static str,
-    #[serde(rename = "@kind")]
-    kind: &'static str,
-    #[serde(rename = "$value")]
-    data_type: DataType,
-    #[serde(rename = "ssd:ConnectorGeometry")]
-    geometry: ConnectorGeometry,
-}
-
-#[derive(Serialize)]
-enum DataType {
-    #[serde(rename = "ssc:Real")]
-    Real {
-        #[serde(rename = "@unit")]
-        unit: &'static str,
-    },
-    #[serde(rename = "ssc:Integer")]
-    Integer,
-    #[serde(rename = "ssc:Boolean")]
-    Boolean,
-}
-
-/// Place on the component's edge, both coordinates from 0 to 1, y upwards.
-#[derive(Serialize)]
-struct ConnectorGeometry {
-    #[serde(rename = "@x")]
-    x: f64,
-    #[serde(rename = "@y")]
-    y: f64,
 }
 
 /// Corners of the component, y upwards.
@@ -151,24 +112,6 @@ struct ParameterBinding {
 }
 
 #[derive(Serialize)]
-struct Connections {
-    #[serde(rename = "ssd:Connection")]
-    connections: Vec<Connection>,
-}
-
-#[derive(Serialize)]
-struct Connection {
-    #[serde(rename = "@startElement")]
-    start_element: &'static str,
-    #[serde(rename = "@startConnector")]
-    start_connector: &'static str,
-    #[serde(rename = "@endElement")]
-    end_element: &'static str,
-    #[serde(rename = "@endConnector")]
-    end_connector: &'static str,
-}
-
-#[derive(Serialize)]
 pub struct Units {
     #[serde(rename = "ssc:Unit")]
     units: Vec<Unit>,
@@ -194,97 +137,52 @@ struct BaseUnit {
     ampere: i8,
 }
 
-#[derive(Serialize)]
-struct DefaultExperiment {
-    #[serde(rename = "@startTime")]
-    start_time: String,
-    #[serde(rename = "@stopTime")]
-    stop_time: String,
-    #[serde(rename = "ssd:Annotations")]
-    annotations: Annotations,
-}
-
-#[derive(Serialize)]
-struct Annotations {
-    #[serde(rename = "ssc:Annotation")]
-    annotation: Annotation,
-}
-
-#[derive(Serialize)]
-struct Annotation {
-    #[serde(rename = "@type")]
-    annotation_type: &'static str,
-    #[serde(rename = "osp:Algorithm")]
-    algorithm: Algorithm,
-}
-
-#[derive(Serialize)]
-struct Algorithm {
-    #[serde(rename = "osp:FixedStepAlgorithm")]
-    fixed_step: FixedStepAlgorithm,
-}
-
-#[derive(Serialize)]
-struct FixedStepAlgorithm {
-    #[serde(rename = "@baseStepSize")]
-    base_step_size: String,
-}
-
 impl SystemStructureDescription {
-    pub fn new(system: &'static UnitSystem, time: GenerationTime) -> Self {
+    pub fn new(system: &'static UnitSystem, form: SystemForm, time: GenerationTime) -> Self {
         let components = Component::all_of(system);
-        let units = components.iter().flat_map(connectors_of);
         Self {
             description_namespace: DESCRIPTION,
             common_namespace: COMMON,
-            step_size_namespace: STEP_SIZE_NAMESPACE,
-            version: VERSION,
+            cosim_namespace: COSIM_NAMESPACE,
+            omsimulator_namespace: OMSIMULATOR_NAMESPACE,
+            version: form.version(),
             name: system.name,
             copyright: licenses::COPYRIGHT,
             license: licenses::NAME,
             generation_tool: GENERATION_TOOL,
             generation_time: time.to_string(),
-            units: Units::of(units),
+            units: Units::of(components.iter().flat_map(|component| connectable(component, form))),
             default_experiment: DefaultExperiment::new(system),
-            system: System::new(system, components),
+            system: System::new(system, &components, form),
         }
     }
 }
 
 impl System {
-    fn new(system: &'static UnitSystem, components: [Component; 2]) -> Self {
-        let [controller, plant] = &components;
-        let wires = |from: &Component, to: &Component| {
-            let (start_element, end_element) = (from.name, to.name);
-            to.wired.iter().map(move |&(start_connector, end_connector)| Connection {
-                start_element,
-                start_connector,
-                end_element,
-                end_connector,
-            })
-        };
-        let connections = wires(plant, controller).chain(wires(controller, plant)).collect();
+    fn new(system: &'static UnitSystem, components: &[Component; 2], form: SystemForm) -> Self {
+        let elements = components.iter().zip(0..).map(|(component, column)| element(component, column, form));
         Self {
             name: system.name,
             description: format!(
                 "{} with {}",
                 system.plant.description.name, system.controller.description.name
             ),
-            elements: Elements { components: components.iter().zip(0..).map(element).collect() },
-            connections: Connections { connections },
+            connectors: form.has_system_connectors().then(|| Connectors::of_system(components, form)),
+            elements: Elements { components: elements.collect() },
+            connections: Connections::new(components, form),
+            annotations: SystemAnnotations::new(system),
         }
     }
 }
 
-fn element((component, column): (&Component, i32)) -> ComponentElement {
-    let description = component.unit.description;
+fn element(component: &Component, column: i32, form: SystemForm) -> ComponentElement {
     ComponentElement {
         name: component.name,
-        description: description.summary,
+        description: component.unit.description.summary,
         media_type: "application/x-fmu-sharedlibrary",
         source: component.unit_path(),
         implementation: "CoSimulation",
-        connectors: Connectors::new(component),
+        connectors: Connectors::of_component(component, form),
         geometry: ElementGeometry { x1: 300 * column, y1: 0, x2: 300 * column + 200, y2: 200 },
         bindings: ParameterBindings {
             binding: ParameterBinding {
@@ -292,57 +190,6 @@ fn element((component, column): (&Component, i32)) -> ComponentElement {
                 source: component.parameters_path(),
             },
         },
-    }
-}
-
-/// Variables of a component that other components can be connected to.
-fn connectors_of(component: &Component) -> impl Iterator<Item = &'static Variable> {
-    let Description { variables, .. } = component.unit.description;
-    let wired = component.wired;
-    variables.iter().filter(move |variable| match variable.causality {
-        Causality::Input => wired.iter().any(|(_, input)| *input == variable.name),
-        Causality::Output => DataType::of(variable).is_some(),
-        _ => false,
-    })
-}
-
-impl Connectors {
-    /// Inputs on the left edge, outputs on the right.
-    fn new(component: &Component) -> Self {
-        let side = |causality| {
-            let variables: Vec<_> =
-                connectors_of(component).filter(|variable| variable.causality == causality).collect();
-            let (count, x) = (variables.len(), f64::from(u8::from(causality == Causality::Output)));
-            variables.into_iter().enumerate().filter_map(move |(place, variable)| {
-                let y = 1.0 - (place as f64 + 0.5) / count as f64;
-                Connector::new(variable, ConnectorGeometry { x, y })
-            })
-        };
-        Self { connectors: side(Causality::Input).chain(side(Causality::Output)).collect() }
-    }
-}
-
-impl Connector {
-    fn new(variable: &'static Variable, geometry: ConnectorGeometry) -> Option<Self> {
-        Some(Self {
-            name: variable.name,
-            description: variable.description,
-            kind: if variable.causality == Causality::Input { "input" } else { "output" },
-            data_type: DataType::of(variable)?,
-            geometry,
-        })
-    }
-}
-
-impl DataType {
-    /// `None` for types that SSP 1.0 or its importers do not have.
-    fn of(variable: &Variable) -> Option<Self> {
-        match variable.kind {
-            Kind::Real(quantity) => Some(Self::Real { unit: quantity.unit.name }),
-            Kind::Integer => Some(Self::Integer),
-            Kind::Boolean => Some(Self::Boolean),
-            _ => None,
-        }
     }
 }
 
@@ -365,25 +212,5 @@ impl Unit {
     fn new(unit: &UnitOfMeasure) -> Self {
         let [kilogram, metre, second, ampere] = unit.exponents;
         Self { name: unit.name, base: BaseUnit { kilogram, metre, second, ampere } }
-    }
-}
-
-impl DefaultExperiment {
-    fn new(system: &UnitSystem) -> Self {
-        let [plant, controller] = [system.plant, system.controller].map(|unit| unit.description);
-        Self {
-            start_time: real(0.0),
-            stop_time: real(plant.stop_time.max(controller.stop_time)),
-            annotations: Annotations {
-                annotation: Annotation {
-                    annotation_type: STEP_SIZE_ANNOTATION,
-                    algorithm: Algorithm {
-                        fixed_step: FixedStepAlgorithm {
-                            base_step_size: real(plant.step_size.min(controller.step_size)),
-                        },
-                    },
-                },
-            },
-        }
     }
 }

@@ -1,4 +1,4 @@
-//! Parameter sets (`*.ssv`; SSP 1.0.1, section 6): all numbers and truth values that may be changed, at their start
+//! Parameter sets (`*.ssv`; SSP 1.0.1 and 2.0, section 6): all numbers and truth values that may be changed, at their start
 //! values.
 //!
 //! Enumerations are left out: of the importers at hand one ends the process and two fail on a set that has any.
@@ -6,7 +6,7 @@
 use serde::Serialize;
 
 use super::description::Units;
-use super::{COMMON, PARAMETER_VALUES, VERSION};
+use super::{COMMON, PARAMETER_VALUES, SystemForm};
 use crate::package::model_description::{GENERATION_TOOL, real};
 use crate::package::{GenerationTime, licenses};
 use crate::unit::system::System;
@@ -65,8 +65,20 @@ enum Value {
         #[serde(rename = "@unit")]
         unit: &'static str,
     },
+    #[serde(rename = "ssv:Float64")]
+    Float64 {
+        #[serde(rename = "@value")]
+        value: String,
+        #[serde(rename = "@unit")]
+        unit: &'static str,
+    },
     #[serde(rename = "ssv:Integer")]
     Integer {
+        #[serde(rename = "@value")]
+        value: i32,
+    },
+    #[serde(rename = "ssv:Int32")]
+    Int32 {
         #[serde(rename = "@value")]
         value: i32,
     },
@@ -82,18 +94,19 @@ impl ParameterSet {
         system: &System,
         description: &'static Description,
         start_values: &StartValues,
+        form: SystemForm,
         time: GenerationTime,
     ) -> Self {
         let parameters = || description.variables.iter().filter(|row| row.causality == Causality::Parameter);
         let values =
             description.variables.iter().enumerate().filter(|(_, row)| row.causality == Causality::Parameter);
         let values = values
-            .filter_map(|(reference, row)| Parameter::new(row, start_values.of(reference, row)))
+            .filter_map(|(reference, row)| Parameter::new(row, start_values.of(reference, row), form))
             .collect();
         Self {
             values_namespace: PARAMETER_VALUES,
             common_namespace: COMMON,
-            version: VERSION,
+            version: form.version(),
             name: system.name,
             description: format!("Parameters of {} at their start values", description.name),
             copyright: licenses::COPYRIGHT,
@@ -107,11 +120,19 @@ impl ParameterSet {
 }
 
 impl Parameter {
-    fn new(variable: &'static Variable, start: f64) -> Option<Self> {
-        let value = match variable.kind {
-            Kind::Real(quantity) => Value::Real { value: real(start), unit: quantity.unit.name },
-            Kind::Integer => Value::Integer { value: start as i32 },
-            Kind::Boolean => Value::Boolean { value: start != 0.0 },
+    fn new(variable: &'static Variable, start: f64, form: SystemForm) -> Option<Self> {
+        let value = match (variable.kind, form) {
+            (Kind::Real(quantity), SystemForm::Closed | SystemForm::Driven) => {
+                Value::Real { value: real(start), unit: quantity.unit.name }
+            }
+            (Kind::Real(quantity), SystemForm::Two) => {
+                Value::Float64 { value: real(start), unit: quantity.unit.name }
+            }
+            (Kind::Integer, SystemForm::Closed | SystemForm::Driven) => {
+                Value::Integer { value: start as i32 }
+            }
+            (Kind::Integer, SystemForm::Two) => Value::Int32 { value: start as i32 },
+            (Kind::Boolean, _) => Value::Boolean { value: start != 0.0 },
             _ => return None,
         };
         Some(Self { name: variable.name, description: variable.description, value })

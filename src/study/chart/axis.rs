@@ -2,9 +2,10 @@
 
 use std::ops::Range;
 
-/// Whole decades around a range, at least one.
+/// Whole decades around a range, at least one, as far as numbers reach.
 pub(super) fn decades((low, high): (f64, f64)) -> Range<f64> {
-    let (low, high) = (10f64.powf(low.log10().floor()), 10f64.powf(high.log10().ceil()));
+    let low = 10f64.powf(low.log10().floor()).clamp(f64::MIN_POSITIVE, f64::MAX / 10.0);
+    let high = 10f64.powf(high.log10().ceil()).min(f64::MAX);
     low..if high > low { high } else { 10.0 * low }
 }
 
@@ -30,6 +31,15 @@ pub(super) fn tick(value: f64, decimals: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Guards: an axis that ends at infinity cannot be drawn.
+    #[test]
+    fn decades_reach_no_further_than_numbers() {
+        assert_eq!(decades((0.03, 40.0)), 0.01..100.0);
+        for range in [decades((1.0, f64::MAX)), decades((f64::MAX, f64::MAX)), decades((5e-324, 1.0))] {
+            assert!(range.start > 0.0 && range.start < range.end && range.end.is_finite(), "{range:?}");
+        }
+    }
 
     #[test]
     fn ticks_are_readable() {

@@ -6,6 +6,7 @@ use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree, fontdb};
 
 use super::{FONT, Figure};
+use crate::causes::with_causes;
 use crate::study::StudyError;
 
 /// Pixels per SVG unit, so that the picture is sharp on paper and on dense screens.
@@ -23,10 +24,10 @@ static FONTS: LazyLock<Arc<fontdb::Database>> = LazyLock::new(|| {
 pub fn png(figure: &Figure, svg: &str) -> Result<Vec<u8>, StudyError> {
     let fail = |reason: String| StudyError::Draw { figure: figure.title.clone(), reason };
     let options = Options { font_family: FONT.to_owned(), fontdb: FONTS.clone(), ..Options::default() };
-    let tree = Tree::from_str(svg, &options).map_err(|error| fail(error.to_string()))?;
+    let tree = Tree::from_str(svg, &options).map_err(|error| fail(with_causes(&error)))?;
     let size = tree.size().to_int_size().scale_by(SCALE).ok_or_else(|| fail("empty picture".to_owned()))?;
     let mut pixels =
         Pixmap::new(size.width(), size.height()).ok_or_else(|| fail("picture too large".to_owned()))?;
     resvg::render(&tree, Transform::from_scale(SCALE, SCALE), &mut pixels.as_mut());
-    pixels.encode_png().map_err(|error| fail(error.to_string()))
+    pixels.encode_png().map_err(|error| fail(with_causes(&error)))
 }

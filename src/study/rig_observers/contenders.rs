@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::estimators::{DisturbanceKalman, ExtendedStateEstimator, WindowedNewton, velocity_error};
+use crate::causes::with_causes;
 use crate::observer::sampled_extended_state::{ExtendedStateSettings, Form};
 use crate::study::StudyError;
 use crate::study::report::quantity;
@@ -90,7 +91,7 @@ fn extended_state(
     };
     let failed = |reason: String| StudyError::Search { reason };
     let optimum = minimise(cost, space.bounds(), &SwarmSettings::FALLING_INERTIA, |_| ())
-        .map_err(|error| failed(error.to_string()))?;
+        .map_err(|error| failed(with_causes(&*error)))?;
     let candidate =
         space.candidate(&optimum.position).ok_or_else(|| failed("nothing was found".to_owned()))?;
     let tuning = match candidate {

@@ -14,6 +14,7 @@ use noise_aware::NoiseAware;
 use settings::SwarmSettings;
 use swarm::{Iteration, Optimum, minimise};
 
+use crate::causes::with_causes;
 use crate::host::Value;
 use crate::study::StudyError;
 use crate::study::loop_packages::Parameter;
@@ -109,7 +110,7 @@ pub fn tune(
     };
     let failed = |reason: String| StudyError::Search { reason };
     let optimum =
-        minimise(cost, space.bounds(), settings, watch).map_err(|error| failed(error.to_string()))?;
+        minimise(cost, space.bounds(), settings, watch).map_err(|error| failed(with_causes(&*error)))?;
     let candidate =
         space.candidate(&optimum.position).ok_or_else(|| failed("nothing was found".to_owned()))?;
     let printed = match observer {

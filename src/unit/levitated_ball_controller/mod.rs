@@ -7,8 +7,10 @@ use parameters::{check_prefilters, initial_estimate, law, observer_settings};
 pub use table::DESCRIPTION;
 use table::*;
 
+use super::longest_step::check_step;
 use super::sample_clock::SampleClock;
-use super::sampled::{LARGEST_NUMBER_OF_TICKS, SampledUnit};
+use super::sampled::SampledUnit;
+use super::start_delay::StartDelay;
 use super::{Description, Journal, Topic, Unit, UnitError, start_values};
 use crate::controller::ball_feedback_linearisation::BallFeedbackLinearisation;
 use crate::controller::saturate;
@@ -18,12 +20,16 @@ use crate::signal::{BallReferenceFilter, SmoothReference};
 use serde::{Deserialize, Serialize};
 use serde_big_array::BigArray;
 
+/// What a tick costs at most \[s\], see [`super::work`].
+const COST_OF_TICK: f64 = 0.8e-6;
+
 /// The controller as a unit.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct LevitatedBallController {
     #[serde(with = "BigArray")]
     values: [f64; COUNT],
     clock: SampleClock,
+    start_delay: StartDelay,
     law: BallFeedbackLinearisation,
     awaits_first_tick: bool,
     reference: BallReferenceFilter,
@@ -36,6 +42,7 @@ impl LevitatedBallController {
         let values = start_values(&VARIABLES);
         Self {
             clock: SampleClock::new(values[SAMPLE_TIME], 0.0),
+            start_delay: StartDelay::new(0.0, values[START_DELAY], values[SAMPLE_TIME]),
             law: law(&values),
             awaits_first_tick: true,
             reference: BallReferenceFilter::new(values[INITIAL_REFERENCE]),
@@ -47,6 +54,9 @@ impl LevitatedBallController {
     /// Reads the inputs, runs the observer, then the law, and sets the outputs.
     #[inline]
     fn tick_at(&mut self, time: f64, journal: &mut dyn Journal) {
+        if self.start_delay.covers(time) {
+            return;
+        }
         self.values[TICK_TIME] = time;
         let values = &mut self.values;
         let (current, rate) = (values[CURRENT_INPUT], values[REFERENCE_FILTER]);
@@ -133,10 +143,15 @@ impl Unit for LevitatedBallController {
         self.law = law(&self.values);
     }
 
+    fn check_parameters(&self) -> Result<(), UnitError> {
+        check_prefilters(&self.values)
+    }
+
     fn initialise(&mut self, start_time: f64) -> Result<(), UnitError> {
         let values = &mut self.values;
         self.law = law(values);
         self.clock = SampleClock::new(values[SAMPLE_TIME], start_time);
+        self.start_delay = StartDelay::new(start_time, values[START_DELAY], values[SAMPLE_TIME]);
         self.reference = BallReferenceFilter::new(values[INITIAL_REFERENCE]);
         self.observer = BallObserver::new(observer_settings(values), initial_estimate(values));
         self.awaits_first_tick = true;
@@ -150,9 +165,11 @@ impl Unit for LevitatedBallController {
     }
 
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError> {
-        check_prefilters(&self.values)?;
-        for k in self.clock.advance_at_most(duration, LARGEST_NUMBER_OF_TICKS)? {
-            self.tick_at(self.clock.time_of(k), journal);
+        check_step(duration, self.values[LONGEST_STEP])?;
+        let (clock, ticks) = self.affordable_ticks(duration)?;
+        self.clock = clock;
+        for k in ticks {
+            self.tick_at(clock.time_of(k), journal);
         }
         Ok(())
     }
@@ -178,5 +195,9 @@ impl SampledUnit for LevitatedBallController {
 
     fn tick(&mut self, time: f64, journal: &mut dyn Journal) {
         self.tick_at(time, journal);
+    }
+
+    fn cost_of_tick(&self) -> f64 {
+        COST_OF_TICK
     }
 }

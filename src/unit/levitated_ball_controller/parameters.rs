@@ -67,8 +67,7 @@ fn ball(values: &[f64; COUNT]) -> LevitatedBall {
     }
 }
 
-/// The regression needs two different prefilters. Asked before a step and not at initialisation, when an importer may be
-/// between setting the one and the other and read the outputs.
+/// The regression needs two different prefilters.
 pub(super) fn check_prefilters(values: &[f64; COUNT]) -> Result<(), UnitError> {
     if values[PREFILTER_1] != values[PREFILTER_2] {
         return Ok(());

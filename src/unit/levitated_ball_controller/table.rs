@@ -6,7 +6,9 @@ use crate::unit::levitated_ball::{
     RESISTANCE as RESISTANCE_QUANTITY, VELOCITY, VOLTAGE, gap, gravity, inductance_constant, mass,
     resistance,
 };
+use crate::unit::longest_step::longest_step;
 use crate::unit::quantity::{DURATION, Enumeration, RATIO, TIME as TIME_QUANTITY};
+use crate::unit::start_delay::start_delay;
 use crate::unit::variable::{Kind, Variability, Variable, variable_table};
 
 static OBSERVER_KIND: Enumeration = Enumeration {
@@ -55,7 +57,7 @@ pub(super) const STATE: f64 = 2.0;
 const fn prefilter(name: &'static str, start: f64) -> Variable {
     Variable::parameter(name, Kind::Real(&RATE), start)
         .range(1e-2, 1e6)
-        .describe("alpha, rate of a low-pass that makes the regression; with two equal ones no step is made")
+        .describe("alpha, rate of a low-pass that makes the regression; the two have to differ")
 }
 
 const fn filter(name: &'static str, start: f64) -> Variable {
@@ -121,6 +123,8 @@ variable_table! {
     SAMPLE_TIME = Variable::parameter("sample_time", Kind::Real(&DURATION), 1e-4)
         .range(1e-6, 1.0)
         .describe("T, the unit ticks at all multiples of it, whatever the communication step size");
+    START_DELAY = start_delay();
+    LONGEST_STEP = longest_step();
     OBSERVER = Variable::parameter("observer.kind", Kind::Enumeration(&OBSERVER_KIND), 1.0)
         .describe("Estimator of the flux offset");
     GAIN = Variable::tunable("observer.gain", Kind::Real(&RATE), 10.0)

@@ -83,12 +83,16 @@ impl ContinuousUnit for LevitatedBallPlant {
         values[MAGNET_INDICATOR] = at_magnet;
         values[CURRENT_OUTPUT] = self.ball.current(position, flux);
         values[MAGNETIC_FORCE] = self.ball.magnetic_force(flux);
+        if self.solver == Solver::Importer {
+            values[VOLTAGE_MEASURED] = values[VOLTAGE_INPUT];
+            if !self.sensor.is_read(self.solver) {
+                values[CURRENT_MEASURED] = values[CURRENT_OUTPUT];
+            }
+        }
     }
 
-    fn enter_event(&mut self) {
-        self.evaluate();
-        self.values[VOLTAGE_MEASURED] = self.values[VOLTAGE_INPUT];
-        self.read_sensor();
+    fn set_solver(&mut self, solver: Solver) -> bool {
+        core::mem::replace(&mut self.solver, solver) != solver
     }
 
     fn update_discrete_states(&mut self) -> bool {
@@ -96,7 +100,15 @@ impl ContinuousUnit for LevitatedBallPlant {
         let mut state = before;
         let contact = transition(&self.driven(), &mut state, self.contact);
         self.set_state(state, contact);
+        if self.sensor.reaches_reading(self.values[TIME]) {
+            let [position, _, flux] = state;
+            self.read_sensor(self.ball.current(position, flux));
+        }
         state != before
+    }
+
+    fn next_event_time(&self) -> Option<f64> {
+        self.sensor.next_reading(self.values[TIME])
     }
 
     fn partial_derivative(&self, unknown: usize, known: usize) -> f64 {
@@ -106,18 +118,22 @@ impl ContinuousUnit for LevitatedBallPlant {
             ACCELERATION_LOCAL if self.is_free() => self.acceleration_slope(known),
             FLUX_DERIVATIVE => self.flux_derivative_slope(known),
             CURRENT_OUTPUT => self.current_slope(known),
+            CURRENT_MEASURED if !self.sensor.is_read(self.solver) => self.current_slope(known),
+            VOLTAGE_MEASURED => {
+                f64::from(u8::from(known == VOLTAGE_INPUT && self.solver == Solver::Importer))
+            }
             _ => 0.0,
         }
     }
 
     fn initial_partial_derivative(&self, unknown: usize, known: usize) -> f64 {
         let resolution = self.values[SENSOR_RESOLUTION];
-        if unknown == CURRENT_MEASURED {
+        if unknown == CURRENT_MEASURED && self.sensor.is_read(self.solver) {
             return match known {
                 // The number of steps in the reading.
                 SENSOR_RESOLUTION if resolution != 0.0 => self.values[CURRENT_MEASURED] / resolution,
                 _ if resolution != 0.0 => 0.0,
-                SENSOR_NOISE => GaussianNoise::new(self.values[SENSOR_SEED] as u64, SENSOR_STREAM).sample(),
+                SENSOR_NOISE => Sensor::first_noise(self.values[SENSOR_SEED]),
                 _ => self.initial_partial_derivative(CURRENT_OUTPUT, known),
             };
         }

@@ -3,12 +3,16 @@
 mod parameters;
 mod table;
 
-use parameters::{Law, Measurement, initial_estimate, law, limits, observer_settings};
+use parameters::{
+    Law, Measurement, check_input_gain, cost_of_tick, initial_estimate, law, limits, observer_settings,
+};
 pub use table::DESCRIPTION;
 use table::*;
 
+use super::longest_step::check_step;
 use super::sample_clock::SampleClock;
-use super::sampled::{LARGEST_NUMBER_OF_TICKS, SampledUnit};
+use super::sampled::SampledUnit;
+use super::start_delay::StartDelay;
 use super::{Description, Journal, Topic, Unit, UnitError, start_values};
 use crate::controller::digital_pid::DigitalPid;
 use crate::controller::saturate_between;
@@ -24,6 +28,7 @@ pub struct MaglevRigController {
     #[serde(with = "BigArray")]
     values: [f64; COUNT],
     clock: SampleClock,
+    start_delay: StartDelay,
     measurement: Measurement,
     observer: ExtendedStateObserver,
     reference_filter: ReferenceFilter,
@@ -41,6 +46,7 @@ impl MaglevRigController {
         let values = start_values(&VARIABLES);
         Self {
             clock: SampleClock::new(values[SAMPLE_TIME], 0.0),
+            start_delay: StartDelay::new(0.0, values[START_DELAY], values[SAMPLE_TIME]),
             measurement: Measurement::from_values(&values),
             observer: ExtendedStateObserver::new(observer_settings(&values), ExtendedState::default()),
             reference_filter: ReferenceFilter::new(values[REFERENCE_FILTER], values[SAMPLE_TIME]),
@@ -56,6 +62,9 @@ impl MaglevRigController {
     /// Reads the inputs, runs the observer, then the law, and sets the outputs.
     #[inline]
     fn tick_at(&mut self, time: f64, journal: &mut dyn Journal) {
+        if self.start_delay.covers(time) {
+            return;
+        }
         self.values[TICK_TIME] = time;
         if self.awaits_first_tick {
             self.begin(journal);
@@ -162,10 +171,15 @@ impl Unit for MaglevRigController {
         self.hears_applied_voltage = values[OBSERVER_VOLTAGE_SOURCE] == APPLIED;
     }
 
+    fn check_parameters(&self) -> Result<(), UnitError> {
+        check_input_gain(&self.values)
+    }
+
     fn initialise(&mut self, start_time: f64) -> Result<(), UnitError> {
         self.adopt_parameters();
         let values = &mut self.values;
         self.clock = SampleClock::new(values[SAMPLE_TIME], start_time);
+        self.start_delay = StartDelay::new(start_time, values[START_DELAY], values[SAMPLE_TIME]);
         self.pid = DigitalPid::default();
         self.reference = Reference::at_rest(values[REFERENCE]);
         self.awaits_first_tick = true;
@@ -181,8 +195,11 @@ impl Unit for MaglevRigController {
     }
 
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError> {
-        for k in self.clock.advance_at_most(duration, LARGEST_NUMBER_OF_TICKS)? {
-            self.tick_at(self.clock.time_of(k), journal);
+        check_step(duration, self.values[LONGEST_STEP])?;
+        let (clock, ticks) = self.affordable_ticks(duration)?;
+        self.clock = clock;
+        for k in ticks {
+            self.tick_at(clock.time_of(k), journal);
         }
         Ok(())
     }
@@ -212,5 +229,9 @@ impl SampledUnit for MaglevRigController {
 
     fn tick(&mut self, time: f64, journal: &mut dyn Journal) {
         self.tick_at(time, journal);
+    }
+
+    fn cost_of_tick(&self) -> f64 {
+        cost_of_tick(&self.values)
     }
 }

@@ -8,7 +8,14 @@ use crate::observer::extended_state::{
 };
 use crate::observer::sampled_extended_state::{Discretisation, ExtendedStateSettings, Form, InjectionChoice};
 use crate::plant::maglev_rig::PositionSensor;
+use crate::unit::UnitError;
 use serde::{Deserialize, Serialize};
+
+/// Costs at most \[s\], see [`crate::unit::work`]: of a tick, of a closed form for gains as large as they come, and of a
+/// Runge-Kutta step of the observer.
+const COST_OF_TICK: f64 = 200e-9;
+const COST_OF_CLOSED_FORM: f64 = 3e-6;
+const COST_OF_SUBSTEP: f64 = 300e-9;
 
 pub(super) fn observer_settings(values: &[f64; COUNT]) -> ExtendedStateSettings {
     let gains = if values[OBSERVER_TUNING] == GAINS {
@@ -37,6 +44,29 @@ pub(super) fn observer_settings(values: &[f64; COUNT]) -> ExtendedStateSettings 
     let form = if values[OBSERVER_FORM] == CURRENT { Form::Current } else { Form::Predictor };
     let (input_gain, sample_time) = (values[OBSERVER_INPUT_GAIN], values[SAMPLE_TIME]);
     ExtendedStateSettings { injection, input_gain, discretisation, form, sample_time }
+}
+
+/// The law divides by its input gain.
+pub(super) fn check_input_gain(values: &[f64; COUNT]) -> Result<(), UnitError> {
+    if values[CONTROLLER_KIND_CHOICE] != DISTURBANCE_REJECTION || values[CONTROLLER_INPUT_GAIN] != 0.0 {
+        return Ok(());
+    }
+    let variable = &VARIABLES[CONTROLLER_INPUT_GAIN];
+    let (name, unit) = (variable.name, variable.unit());
+    let expected = "another number than 0 with controller.kind = disturbance_rejection";
+    Err(UnitError::Unusable { name, value: 0.0, unit, expected })
+}
+
+/// What a tick costs at most \[s\], see [`crate::unit::work`].
+pub(super) fn cost_of_tick(values: &[f64; COUNT]) -> f64 {
+    let ExtendedStateSettings { injection, discretisation, .. } = observer_settings(values);
+    let observer = match (discretisation, injection) {
+        (Discretisation::RungeKutta(substeps), _) => COST_OF_SUBSTEP * f64::from(substeps),
+        // Frozen gains make another closed form of each sample.
+        (Discretisation::Exact, InjectionChoice::Nonlinear(_)) => COST_OF_CLOSED_FORM,
+        _ => 0.0,
+    };
+    COST_OF_TICK + observer
 }
 
 /// How a sensor voltage \[V\] and the observer's measurement relate.

@@ -1,6 +1,7 @@
 //! Variables and description of the controller of the maglev rig.
 
 use crate::unit::Description;
+use crate::unit::longest_step::longest_step;
 use crate::unit::maglev_rig::{
     BALL_ACCELERATION, BALL_DISTANCE, BALL_VELOCITY, BANDWIDTH, DRIVER_VOLTAGE, FIRST_OBSERVER_GAIN,
     INPUT_GAIN, OBSERVED_ACCELERATION, OBSERVED_INPUT_GAIN, OBSERVED_POSITION, OBSERVED_VELOCITY,
@@ -9,6 +10,7 @@ use crate::unit::maglev_rig::{
     voltage_min,
 };
 use crate::unit::quantity::{DURATION, Enumeration, RATE, RATIO, TIME as TIME_QUANTITY};
+use crate::unit::start_delay::start_delay;
 use crate::unit::variable::{Kind, Variability, Variable, variable_table};
 
 static OBSERVER_KIND: Enumeration = Enumeration {
@@ -170,6 +172,8 @@ variable_table! {
     SAMPLE_TIME = Variable::parameter("sample_time", Kind::Real(&DURATION), 1e-3)
         .range(1e-6, 1.0)
         .describe("T, the unit ticks at all multiples of it, whatever the communication step size");
+    START_DELAY = start_delay();
+    LONGEST_STEP = longest_step();
     OBSERVER = Variable::parameter("observer.kind", Kind::Enumeration(&OBSERVER_KIND), 1.0)
         .describe("Extended state observer");
     OBSERVER_TUNING = Variable::tunable("observer.tuning", Kind::Enumeration(&TUNING), 1.0)

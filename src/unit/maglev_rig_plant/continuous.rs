@@ -60,12 +60,33 @@ impl MaglevRigPlant {
         }
     }
 
+    /// Partial derivatives of the sensor voltage within its range.
+    fn ranged_slope(&self, known: usize) -> f64 {
+        let (voltage, acts) = (self.values[SENSOR_VOLTAGE], |acts: bool| f64::from(u8::from(acts)));
+        let (minimum, maximum) = (self.values[SENSOR_MINIMUM], self.values[SENSOR_MAXIMUM]);
+        match known {
+            SENSOR_MINIMUM => acts(voltage < minimum),
+            SENSOR_MAXIMUM => acts(voltage > maximum),
+            _ if voltage < minimum || voltage > maximum => 0.0,
+            _ => self.sensor_voltage_slope(known),
+        }
+    }
+
+    /// Partial derivatives of the voltage within the driver's limits, or of the current that it drives.
+    fn drive_slope(&self, unknown: usize, known: usize) -> f64 {
+        match (unknown, known) {
+            (VOLTAGE_MEASURED, _) => self.driver_voltage_slope(known),
+            (_, DRIVER_GAIN_PARAMETER) => self.driver_voltage(),
+            _ => self.values[DRIVER_GAIN_PARAMETER] * self.driver_voltage_slope(known),
+        }
+    }
+
     /// Partial derivatives of the first reading; the seed is no real number.
     fn first_reading_slope(&self, known: usize) -> f64 {
         let values = &self.values;
         let (reading, resolution) = (values[SENSOR_VOLTAGE_MEASURED], values[SENSOR_RESOLUTION]);
         let (minimum, maximum) = (values[SENSOR_MINIMUM], values[SENSOR_MAXIMUM]);
-        let sample = GaussianNoise::new(values[SENSOR_SEED] as u64, SENSOR_STREAM).sample();
+        let sample = Sensor::first_noise(values[SENSOR_SEED]);
         let unlimited = quantise(values[SENSOR_VOLTAGE] + values[SENSOR_NOISE] * sample, resolution);
         match known {
             SENSOR_MINIMUM => f64::from(u8::from(unlimited < minimum)),
@@ -101,20 +122,24 @@ impl ContinuousUnit for MaglevRigPlant {
         let (held, state) = (self.held(), self.state());
         let [position_rate, acceleration] = rate_in_contact(&held, &state, self.contact);
         let [at_upper_stop, at_lower_stop] = indicators(&held, &state, self.contact);
+        let sensor_voltage = self.sensor_voltage(state[0]);
         let values = &mut self.values;
-        let sensor = PositionSensor { gain: values[SENSOR_GAIN], offset: values[SENSOR_OFFSET] };
         values[POSITION_DERIVATIVE] = position_rate;
         values[ACCELERATION] = acceleration;
         values[UPPER_STOP_INDICATOR] = at_upper_stop;
         values[LOWER_STOP_INDICATOR] = at_lower_stop;
-        values[SENSOR_VOLTAGE] = sensor.voltage(state[0]);
+        values[SENSOR_VOLTAGE] = sensor_voltage;
         values[MAGNETIC_FORCE] = held.rig.magnetic_force(state[0].max(held.upper_stop), held.voltage);
+        if self.solver == Solver::Importer {
+            self.echo(held.voltage);
+            if !self.sensor.is_read(self.solver) {
+                self.values[SENSOR_VOLTAGE_MEASURED] = self.within_range(sensor_voltage, sensor_voltage);
+            }
+        }
     }
 
-    fn enter_event(&mut self) {
-        self.evaluate();
-        self.echo(self.driver_voltage());
-        self.read_sensor();
+    fn set_solver(&mut self, solver: Solver) -> bool {
+        core::mem::replace(&mut self.solver, solver) != solver
     }
 
     fn update_discrete_states(&mut self) -> bool {
@@ -122,7 +147,14 @@ impl ContinuousUnit for MaglevRigPlant {
         let mut state = before;
         let contact = transition(&self.held(), &mut state, self.contact);
         self.set_state(state, contact);
+        if self.sensor.reaches_reading(self.values[TIME]) {
+            self.read_sensor(self.sensor_voltage(state[0]));
+        }
         state != before
+    }
+
+    fn next_event_time(&self) -> Option<f64> {
+        self.sensor.next_reading(self.values[TIME])
     }
 
     fn partial_derivative(&self, unknown: usize, known: usize) -> f64 {
@@ -131,12 +163,14 @@ impl ContinuousUnit for MaglevRigPlant {
             POSITION_DERIVATIVE => f64::from(u8::from(known == VELOCITY && self.is_free())),
             ACCELERATION if self.is_free() => self.acceleration_slope(known),
             SENSOR_VOLTAGE => self.sensor_voltage_slope(known),
+            SENSOR_VOLTAGE_MEASURED if !self.sensor.is_read(self.solver) => self.ranged_slope(known),
+            VOLTAGE_MEASURED | CURRENT if self.solver == Solver::Importer => self.drive_slope(unknown, known),
             _ => 0.0,
         }
     }
 
     fn initial_partial_derivative(&self, unknown: usize, known: usize) -> f64 {
-        if unknown == SENSOR_VOLTAGE_MEASURED {
+        if unknown == SENSOR_VOLTAGE_MEASURED && self.sensor.is_read(self.solver) {
             return self.first_reading_slope(known);
         }
         let through_states = [POSITION, VELOCITY]

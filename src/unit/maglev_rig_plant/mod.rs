@@ -1,194 +1,25 @@
 //! Exported unit `MaglevRigPlant`: ball, coil with its driver, position sensor and end stops.
 
 mod continuous;
+mod table;
 
-use super::maglev_rig::{
-    BALL_ACCELERATION, BALL_DISTANCE, BALL_VELOCITY, DRIVER_GAIN, DRIVER_VOLTAGE, ELECTROMAGNETIC_CONSTANT,
-    OPERATING_VOLTAGE, RIG_CURRENT, RIG_FORCE, RIG_GRAVITY, RIG_MASS, SENSOR_NOISE as SENSOR_NOISE_QUANTITY,
-    SENSOR_VOLTAGE as SENSOR_VOLTAGE_QUANTITY, sensor_gain, sensor_offset, voltage_max, voltage_min,
-};
-use super::variable::{Dependency, Kind, Variability, Variable, variable_table};
-use super::{ContinuousUnit, Description, Journal, Topic, Unit, UnitError, start_values};
+pub use table::DESCRIPTION;
+use table::*;
+
+use super::input_ramp::end_of_ramp;
+use super::sensor::{Sensor, check_sample_time};
+use super::work::require_affordable;
+use super::{ContinuousUnit, Description, Journal, Solver, Topic, Unit, UnitError, start_values};
 use crate::controller::saturate_between;
 use crate::plant::end_stops::{Contact, rate_in_contact, transition};
-use crate::plant::maglev_rig::{HeldBall, MaglevRig, PositionSensor, State};
+use crate::plant::maglev_rig::{HeldBall, LONGEST_SUBSTEP, MaglevRig, PositionSensor, State};
 use crate::plant::maglev_rig_ramp::RampedBall;
-use crate::signal::{GaussianNoise, quantise};
+use crate::signal::quantise;
 use serde::{Deserialize, Serialize};
 use serde_big_array::BigArray;
 
-/// What the free ball's acceleration follows from.
-const FORCES: &[Dependency] = &[
-    Dependency::dependent("position"),
-    Dependency::dependent("voltage"),
-    Dependency::discrete("force"),
-    Dependency::dependent("mass"),
-    Dependency::discrete("gravity"),
-    Dependency::dependent("electromagnetic_constant"),
-    Dependency::dependent("driver_gain"),
-    Dependency::dependent("voltage_min"),
-    Dependency::dependent("voltage_max"),
-    Dependency::dependent("upper_stop"),
-];
-
-/// What the distance to a stop and what presses the ball on follow from.
-const CONTACT_FORCES: &[Dependency] = &[
-    Dependency::dependent("position"),
-    Dependency::dependent("voltage"),
-    Dependency::dependent("force"),
-    Dependency::dependent("mass"),
-    Dependency::dependent("gravity"),
-    Dependency::dependent("electromagnetic_constant"),
-    Dependency::dependent("driver_gain"),
-    Dependency::dependent("voltage_min"),
-    Dependency::dependent("voltage_max"),
-    Dependency::dependent("upper_stop"),
-    Dependency::dependent("lower_stop"),
-];
-
-variable_table! {
-    TIME = Variable::time();
-    VOLTAGE_INPUT = Variable::input("voltage", &DRIVER_VOLTAGE)
-        .start(OPERATING_VOLTAGE)
-        .describe("u, voltage at the coil's driver, held over a step unless its derivative is set, and limited by it");
-    FORCE = Variable::input("force", &RIG_FORCE)
-        .range(-1e3, 1e3)
-        .describe("Disturbing force on the ball, positive downwards, held over a step unless its derivative is set");
-    POSITION = Variable::output("position", &BALL_DISTANCE)
-        .initially_from(&["initial.position", "upper_stop", "lower_stop"])
-        .depends_on(&[Dependency::constant("position")])
-        .reinitialised()
-        .describe("x, distance from coil to ball, positive downwards");
-    VELOCITY = Variable::output("velocity", &BALL_VELOCITY)
-        .initially_from(&["initial.velocity", "initial.position", "upper_stop", "lower_stop"])
-        .depends_on(&[Dependency::constant("velocity")])
-        .reinitialised()
-        .describe("x', velocity of the ball, positive downwards");
-    CURRENT = Variable::held_output("current", Kind::Real(&RIG_CURRENT))
-        .describe("i = k1 u, coil current over the last step, of voltage_measured");
-    SENSOR_VOLTAGE = Variable::output("sensor_voltage", &SENSOR_VOLTAGE_QUANTITY)
-        .initially_from(&["initial.position", "upper_stop", "lower_stop", "sensor_gain", "sensor_offset"])
-        .depends_on(&[
-            Dependency::fixed("position"),
-            Dependency::dependent("sensor_gain"),
-            Dependency::constant("sensor_offset"),
-        ])
-        .describe("k2 x + eta, true sensor voltage");
-    SENSOR_VOLTAGE_MEASURED = Variable::held_output("sensor_voltage_measured", Kind::Real(&SENSOR_VOLTAGE_QUANTITY))
-        .initially_from(&[
-            "initial.position", "upper_stop", "lower_stop", "sensor_gain", "sensor_offset", "sensor.noise",
-            "sensor.resolution", "sensor.seed", "sensor.minimum", "sensor.maximum",
-        ])
-        .describe("Sensor voltage with noise, resolution and range, one reading per step, in model exchange per event");
-    VOLTAGE_MEASURED = Variable::held_output("voltage_measured", Kind::Real(&DRIVER_VOLTAGE))
-        .describe("Mean voltage that acted over the last step, within the driver's limits, in model exchange the one \
-            before the last event; wire it to the controller's \
-            voltage_applied");
-    CONTACT = Variable::held_output("contact", Kind::Boolean)
-        .initially_from(&["initial.position", "initial.velocity", "gravity", "upper_stop", "lower_stop"])
-        .describe("Whether the ball rests on a stop");
-    POSITION_DERIVATIVE = Variable::local("der(position)", Kind::Real(&BALL_VELOCITY), Variability::Continuous)
-        .initially_from(&["initial.velocity", "initial.position", "upper_stop", "lower_stop"])
-        .derivative_of("position")
-        .depends_on(&[Dependency::discrete("velocity")])
-        .describe("x', 0 at rest on a stop");
-    ACCELERATION = Variable::local("acceleration", Kind::Real(&BALL_ACCELERATION), Variability::Continuous)
-        .initially_from(&[
-            "voltage", "force", "initial.position", "initial.velocity", "mass", "gravity", "electromagnetic_constant", "driver_gain",
-            "voltage_min", "voltage_max", "upper_stop", "lower_stop",
-        ])
-        .derivative_of("velocity")
-        .depends_on(FORCES)
-        .describe("x'' under the present voltage and force; 0 at rest on a stop");
-    UPPER_STOP_INDICATOR = Variable::event_indicator("event_indicator.upper_stop")
-        .depends_on(CONTACT_FORCES)
-        .describe("Distance to the upper stop as a share of the free way; resting there, what presses the ball on, in g");
-    LOWER_STOP_INDICATOR = Variable::event_indicator("event_indicator.lower_stop")
-        .depends_on(CONTACT_FORCES)
-        .describe("Distance to the lower stop as a share of the free way; resting there, what presses the ball on, in g");
-    MAGNETIC_FORCE = Variable::local("magnetic_force", Kind::Real(&RIG_FORCE), Variability::Continuous)
-        .describe("K i^2 / x^2 under the present voltage, upwards");
-    MASS = Variable::parameter("mass", Kind::Real(&RIG_MASS), MaglevRig::PRINTED.mass)
-        .range(1e-6, 1e3)
-        .describe("m, printed in Table 1");
-    GRAVITY = Variable::parameter("gravity", Kind::Real(&RIG_GRAVITY), MaglevRig::PRINTED.gravity)
-        .range(-100.0, 100.0)
-        .describe("g, printed in Table 1");
-    FORCE_CONSTANT = Variable::parameter(
-        "electromagnetic_constant",
-        Kind::Real(&ELECTROMAGNETIC_CONSTANT),
-        MaglevRig::PRINTED.electromagnetic_constant,
-    )
-        .range(0.0, 1.0)
-        .describe("K, printed in Table 1 without a unit");
-    DRIVER_GAIN_PARAMETER = Variable::parameter(
-        "driver_gain",
-        Kind::Real(&DRIVER_GAIN),
-        MaglevRig::PRINTED.driver_gain,
-    )
-        .range(0.0, 100.0)
-        .describe("k1, current per voltage of the driver with its inner loop, printed in Table 1");
-    SENSOR_GAIN = sensor_gain();
-    SENSOR_OFFSET = sensor_offset();
-    VOLTAGE_MIN = voltage_min("voltage_min");
-    VOLTAGE_MAX = voltage_max("voltage_max");
-    UPPER_STOP = Variable::parameter("upper_stop", Kind::Real(&BALL_DISTANCE), 1e-3)
-        .range(1e-4, 8e-3)
-        .describe("Position at which the ball touches the coil; assumed, x = 0 is a pole of the force");
-    LOWER_STOP = Variable::parameter("lower_stop", Kind::Real(&BALL_DISTANCE), 25e-3)
-        .range(9e-3, 10.0)
-        .describe("Position at which the ball lies; assumed, within the sensor's range");
-    INITIAL_POSITION = Variable::parameter("initial.position", Kind::Real(&BALL_DISTANCE), 9e-3)
-        .range(0.0, 10.0)
-        .describe("x at the start, the rig manual's operating point; beyond a stop it becomes the stop's");
-    INITIAL_VELOCITY = Variable::parameter("initial.velocity", Kind::Real(&BALL_VELOCITY), 0.0)
-        .range(-1e3, 1e3)
-        .describe("x' at the start");
-    SENSOR_NOISE = Variable::tunable("sensor.noise", Kind::Real(&SENSOR_NOISE_QUANTITY), 0.0)
-        .range(0.0, 1e3)
-        .describe("Standard deviation of the sensor's white noise, per reading");
-    SENSOR_RESOLUTION = Variable::tunable("sensor.resolution", Kind::Real(&SENSOR_NOISE_QUANTITY), 0.0)
-        .range(0.0, 1e3)
-        .describe("Step of the sensor's output, 0 for none");
-    SENSOR_MINIMUM = Variable::tunable("sensor.minimum", Kind::Real(&SENSOR_VOLTAGE_QUANTITY), -3.75)
-        .range(-1e3, 0.0)
-        .describe("Smallest sensor voltage; -3.75 V in the rig's manual, which no ball can reach");
-    SENSOR_MAXIMUM = Variable::tunable("sensor.maximum", Kind::Real(&SENSOR_VOLTAGE_QUANTITY), 1.25)
-        .range(0.0, 1e3)
-        .describe("Largest sensor voltage; 1.25 V in the rig's manual, 28 mm");
-    SENSOR_SEED = Variable::parameter("sensor.seed", Kind::Integer, 1.0)
-        .range(0.0, i32::MAX as f64)
-        .describe("Seed of the sensor's noise; the same seed gives the same run on every platform");
-}
-
-pub static DESCRIPTION: Description = Description {
-    name: "MaglevRigPlant",
-    summary: "Maglev rig Feedback 33-942S: a ball below a coil with its current driver and position sensor",
-    documentation: &[
-        "Steel ball below an electromagnet: A. J. Humaidi et al., Experimental Design and Verification of Extended State \
-         Observers for Magnetic Levitation System Based on PSO, Open Electr. Electron. Eng. J. 12, 110-120, 2018, \
-         equations (3) to (7): x'' = g - K i^2 / (m x^2) + force / m with i = k1 u. The paper's equations are pictures; \
-         they are filled in so that its words and Table 1 fit.",
-        "Voltage and force are held over a communication step, which is solved by a Runge-Kutta method of order 5 in \
-         steps of at most 50 us; times of impact and release are found to the last digit. The result does not depend on \
-         the communication step but for rounding and, close to the coil at full voltage, parts in a million.",
-        "For model exchange the states are position and velocity; impacts and releases are state events, at which both \
-         may jump. voltage_measured, current, sensor_voltage_measured and contact are discrete: they change at events \
-         only, when they take the voltage before the event and a new reading. In co-simulation voltage and force may have \
-         a slope (input derivative of order 1, FMI 2.0).",
-        "Printed: m, g, K, k1. From the rig's manual, by way of a public virtual laboratory: sensor gain, offset and \
-         range, operating point 9 mm, limits of the voltage (their negative half is left out: the force goes with the \
-         square, so that negative voltages attract, too). Assumed: the stops. Not modelled: the driver's current loop.",
-    ],
-    variables: &VARIABLES,
-    step_size: 1e-3,
-    stop_time: 10.0,
-};
-
-/// Longest step \[s\], seconds of computing.
-const LONGEST_STEP: f64 = 1e4;
-
-const SENSOR_STREAM: u64 = 1;
+/// What a second costs \[s\], see [`super::work`].
+const LOAD: f64 = 200e-9 / LONGEST_SUBSTEP;
 
 /// The plant as a unit.
 #[derive(Clone, Serialize, Deserialize)]
@@ -199,8 +30,12 @@ pub struct MaglevRigPlant {
     /// Slopes of the inputs during steps \[V/s\] and \[N/s\].
     voltage_slope: f64,
     force_slope: f64,
-    sensor_noise: GaussianNoise,
+    solver: Solver,
+    sensor: Sensor,
 }
+
+/// State and contact of the ball.
+type Motion = (State, Contact);
 
 impl MaglevRigPlant {
     /// The plant with the start values of its table.
@@ -210,7 +45,8 @@ impl MaglevRigPlant {
             contact: Contact::None,
             voltage_slope: 0.0,
             force_slope: 0.0,
-            sensor_noise: GaussianNoise::new(0, SENSOR_STREAM),
+            solver: Solver::default(),
+            sensor: Sensor::start(0.0, 0.0, 0.0),
         }
     }
 
@@ -236,8 +72,26 @@ impl MaglevRigPlant {
 
     /// The input voltage within the driver's limits \[V\].
     fn driver_voltage(&self) -> f64 {
-        let limits = (self.values[VOLTAGE_MIN], self.values[VOLTAGE_MAX]);
-        saturate_between(self.values[VOLTAGE_INPUT], limits, 0.0)
+        self.limited(self.values[VOLTAGE_INPUT])
+    }
+
+    /// `voltage` \[V\] within the driver's limits.
+    fn limited(&self, voltage: f64) -> f64 {
+        saturate_between(voltage, self.voltage_limits(), 0.0)
+    }
+
+    fn voltage_limits(&self) -> (f64, f64) {
+        (self.values[VOLTAGE_MIN], self.values[VOLTAGE_MAX])
+    }
+
+    /// The ball under inputs that begin with a voltage asked for \[V\] and a force \[N\] and move.
+    fn ramped(&self, voltage: f64, force: f64) -> RampedBall {
+        RampedBall {
+            begin: self.ball(voltage, force),
+            voltage_slope: self.voltage_slope,
+            force_slope: self.force_slope,
+            voltage_limits: self.voltage_limits(),
+        }
     }
 
     fn state(&self) -> [f64; 2] {
@@ -257,16 +111,39 @@ impl MaglevRigPlant {
         self.values[CURRENT] = self.values[DRIVER_GAIN_PARAMETER] * voltage;
     }
 
-    fn read_sensor(&mut self) {
-        let values = &mut self.values;
-        let voltage = values[SENSOR_VOLTAGE];
-        let reading = match values[SENSOR_NOISE] {
-            0.0 => voltage,
-            deviation => voltage + deviation * self.sensor_noise.sample(),
+    fn sensor_voltage(&self, position: f64) -> f64 {
+        let sensor = PositionSensor { gain: self.values[SENSOR_GAIN], offset: self.values[SENSOR_OFFSET] };
+        sensor.voltage(position)
+    }
+
+    /// What the sensor makes of a `reading` \[V\]; of none, the limit next to the true `voltage` \[V\].
+    fn within_range(&self, reading: f64, voltage: f64) -> f64 {
+        let range = (self.values[SENSOR_MINIMUM], self.values[SENSOR_MAXIMUM]);
+        saturate_between(reading, range, voltage)
+    }
+
+    /// Reads the sensor at a moment with this true `voltage` \[V\] of it.
+    fn read_sensor(&mut self, voltage: f64) {
+        let reading = self.sensor.read(voltage, self.values[SENSOR_NOISE]);
+        let reading = quantise(reading, self.values[SENSOR_RESOLUTION]);
+        self.values[SENSOR_VOLTAGE_MEASURED] = self.within_range(reading, voltage);
+    }
+
+    /// What becomes of a motion in `duration` \[s\], the inputs beginning with a voltage asked for \[V\] and a force \[N\].
+    #[inline]
+    fn moved(
+        &self,
+        (state, contact): Motion,
+        (voltage, force): (f64, f64),
+        duration: f64,
+    ) -> Result<Motion, UnitError> {
+        let motion = if self.voltage_slope == 0.0 && self.force_slope == 0.0 {
+            self.ball(self.limited(voltage), force).advance(state, contact, duration)
+        } else {
+            self.ramped(voltage, force).advance(state, contact, duration)
         };
-        let range = (values[SENSOR_MINIMUM], values[SENSOR_MAXIMUM]);
-        values[SENSOR_VOLTAGE_MEASURED] =
-            saturate_between(quantise(reading, values[SENSOR_RESOLUTION]), range, voltage);
+        check_finite(&motion.0)?;
+        Ok(motion)
     }
 }
 
@@ -296,46 +173,58 @@ impl Unit for MaglevRigPlant {
         let values = &mut self.values;
         values[TIME] = start_time;
         let start = State { position: values[INITIAL_POSITION], velocity: values[INITIAL_VELOCITY] };
-        self.sensor_noise = GaussianNoise::new(values[SENSOR_SEED] as u64, SENSOR_STREAM);
+        self.sensor = Sensor::start(values[SENSOR_SEED], values[SENSOR_SAMPLE_TIME], start_time);
         // Before the first step no voltage has acted.
         let (state, contact) = self.ball(0.0, 0.0).settle(start);
         self.echo(0.0);
         self.set_state([state.position, state.velocity], contact);
         self.evaluate();
-        self.read_sensor();
+        if self.sensor.is_read(self.solver) {
+            self.read_sensor(self.values[SENSOR_VOLTAGE]);
+        }
         Ok(())
     }
 
+    fn check_parameters(&self) -> Result<(), UnitError> {
+        check_sample_time(self.values[SENSOR_SAMPLE_TIME])
+    }
+
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError> {
-        if duration > LONGEST_STEP {
-            return Err(UnitError::StepTooLong { duration, limit: LONGEST_STEP });
-        }
-        let [position, velocity] = self.state();
-        let (start, force) = (State { position, velocity }, self.values[FORCE]);
+        require_affordable(duration, LOAD + self.sensor.load())?;
+        let (voltage, force) = (self.values[VOLTAGE_INPUT], self.values[FORCE]);
         let (voltage_slope, force_slope) = (self.voltage_slope, self.force_slope);
-        let (state, contact, voltage) = if voltage_slope == 0.0 && force_slope == 0.0 {
-            let voltage = self.driver_voltage();
-            let (state, contact) = self.ball(voltage, force).advance(start, self.contact, duration);
-            (state, contact, voltage)
-        } else {
-            let end = force + force_slope * duration;
-            VARIABLES[FORCE].check(end).map_err(UnitError::InputLeavesRange)?;
-            let begin = self.ball(self.values[VOLTAGE_INPUT], force);
-            let voltage_limits = (self.values[VOLTAGE_MIN], self.values[VOLTAGE_MAX]);
-            let ball = RampedBall { begin, voltage_slope, force_slope, voltage_limits };
-            let (state, contact) = ball.advance(start, self.contact, duration);
-            (state, contact, ball.mean_voltage(duration))
-        };
-        check_finite(&state)?;
+        let voltage_end = end_of_ramp(&VARIABLES[VOLTAGE_INPUT], voltage, voltage_slope, duration)?;
+        let force_end = end_of_ramp(&VARIABLES[FORCE], force, force_slope, duration)?;
+        let readings = self.sensor.readings_within(duration);
+        let [position, velocity] = self.state();
+        let mut motion = (State { position, velocity }, self.contact);
+        let (mut passed, mut sensed) = (0.0, None);
+        if let Some(last) = readings.last {
+            motion = self.moved(motion, (voltage, force), last)?;
+            sensed = Some(self.sensor_voltage(motion.0.position));
+            passed = last;
+        }
+        if passed < duration {
+            let inputs = (voltage + voltage_slope * passed, force + force_slope * passed);
+            motion = self.moved(motion, inputs, duration - passed)?;
+        }
+        let (state, contact) = motion;
         if contact != self.contact && journal.wants(Topic::Events) {
             note_contact(self.values[TIME] + duration, contact, journal);
         }
-        self.values[VOLTAGE_INPUT] += voltage_slope * duration;
-        self.values[FORCE] += force_slope * duration;
-        self.echo(voltage);
+        self.echo(if voltage_slope == 0.0 && force_slope == 0.0 {
+            self.driver_voltage()
+        } else {
+            self.ramped(voltage, force).mean_voltage(duration)
+        });
+        self.values[VOLTAGE_INPUT] = voltage_end;
+        self.values[FORCE] = force_end;
         self.set_state([state.position, state.velocity], contact);
         self.evaluate();
-        self.read_sensor();
+        self.sensor.skip_to_last(&readings, self.values[SENSOR_NOISE]);
+        if let Some(voltage) = sensed {
+            self.read_sensor(voltage);
+        }
         Ok(())
     }
 
@@ -346,6 +235,7 @@ impl Unit for MaglevRigPlant {
     fn is_consistent(&self) -> bool {
         let [position, velocity] = self.state();
         check_finite(&State { position, velocity }).is_ok()
+            && self.sensor.belongs_to(self.values[SENSOR_SAMPLE_TIME])
     }
 }
 

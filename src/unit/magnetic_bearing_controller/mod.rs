@@ -3,12 +3,14 @@
 mod parameters;
 mod table;
 
-use parameters::{initial_estimate, law, observer_settings};
+use parameters::{cost_of_tick, initial_estimate, law, observer_settings};
 pub use table::DESCRIPTION;
 use table::*;
 
+use super::longest_step::check_step;
 use super::sample_clock::SampleClock;
-use super::sampled::{LARGEST_NUMBER_OF_TICKS, SampledUnit};
+use super::sampled::SampledUnit;
+use super::start_delay::StartDelay;
 use super::{Description, Journal, Topic, Unit, UnitError, start_values};
 use crate::controller::{BearingLaw, saturate};
 use crate::observer::{BearingObserver, Estimate};
@@ -22,6 +24,7 @@ pub struct MagneticBearingController {
     #[serde(with = "BigArray")]
     values: [f64; COUNT],
     clock: SampleClock,
+    start_delay: StartDelay,
     law: BearingLaw,
     feeds_back_state: bool,
     hears_applied_voltage: bool,
@@ -36,6 +39,7 @@ impl MagneticBearingController {
         let values = start_values(&VARIABLES);
         Self {
             clock: SampleClock::new(values[SAMPLE_TIME], 0.0),
+            start_delay: StartDelay::new(0.0, values[START_DELAY], values[SAMPLE_TIME]),
             law: law(&values),
             feeds_back_state: values[CONTROLLER_FEEDBACK] == STATE,
             hears_applied_voltage: values[OBSERVER_VOLTAGE_SOURCE] == APPLIED,
@@ -48,6 +52,9 @@ impl MagneticBearingController {
     /// Reads the inputs, runs the observer, then the law, and sets the outputs.
     #[inline]
     fn tick_at(&mut self, time: f64, journal: &mut dyn Journal) {
+        if self.start_delay.covers(time) {
+            return;
+        }
         let values = &mut self.values;
         values[TICK_TIME] = time;
         let acted = if self.hears_applied_voltage { values[VOLTAGE_APPLIED] } else { values[VOLTAGE_OUTPUT] };
@@ -131,6 +138,7 @@ impl Unit for MagneticBearingController {
         let values = &mut self.values;
         let initial = initial_estimate(values);
         self.clock = SampleClock::new(values[SAMPLE_TIME], start_time);
+        self.start_delay = StartDelay::new(start_time, values[START_DELAY], values[SAMPLE_TIME]);
         self.observer = BearingObserver::new(observer_settings(values), initial);
         self.awaits_first_tick = true;
         values[TIME] = start_time;
@@ -151,8 +159,11 @@ impl Unit for MagneticBearingController {
     }
 
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError> {
-        for k in self.clock.advance_at_most(duration, LARGEST_NUMBER_OF_TICKS)? {
-            self.tick_at(self.clock.time_of(k), journal);
+        check_step(duration, self.values[LONGEST_STEP])?;
+        let (clock, ticks) = self.affordable_ticks(duration)?;
+        self.clock = clock;
+        for k in ticks {
+            self.tick_at(clock.time_of(k), journal);
         }
         Ok(())
     }
@@ -179,5 +190,9 @@ impl SampledUnit for MagneticBearingController {
 
     fn tick(&mut self, time: f64, journal: &mut dyn Journal) {
         self.tick_at(time, journal);
+    }
+
+    fn cost_of_tick(&self) -> f64 {
+        cost_of_tick(&self.values)
     }
 }

@@ -12,6 +12,34 @@ use crate::observer::windowed_newton::WindowedNewtonSettings;
 use crate::plant::magnetic_bearing::{MagneticBearing, Map, State};
 use crate::unit::magnetic_bearing::map;
 
+/// Costs at most \[s\], see [`crate::unit::work`]: of a tick without iterations, of an iteration, of what each sample of a
+/// longer window adds to it, and of a sample of the Kalman filter, which may go over the beginning again and again.
+const COST_OF_TICK: f64 = 200e-9;
+const COST_OF_ITERATION: f64 = 60e-9;
+const COST_OF_WINDOW_SAMPLE: f64 = 60e-9;
+const COST_OF_FILTERING: f64 = 1e-6;
+/// Residuals that a line search may compute per iteration, each as costly as the iteration.
+const SEARCHED_LENGTHS: f64 = 41.0;
+
+/// What a tick costs at most \[s\].
+pub(super) fn cost_of_tick(values: &[f64; COUNT]) -> f64 {
+    let iterations = |newton: &NewtonSettings| {
+        let line_search = if newton.line_search { 1.0 + SEARCHED_LENGTHS } else { 1.0 };
+        f64::from(newton.max_iterations) * line_search
+    };
+    COST_OF_TICK
+        + match observer_settings(values) {
+            BearingObserverSettings::Kalman(_) => COST_OF_FILTERING,
+            BearingObserverSettings::ReducedNewton(settings) => {
+                COST_OF_ITERATION * f64::from(settings.max_iterations)
+            }
+            BearingObserverSettings::Newton(settings) => COST_OF_ITERATION * iterations(&settings),
+            BearingObserverSettings::WindowedNewton(WindowedNewtonSettings { newton, window }) => {
+                COST_OF_WINDOW_SAMPLE * window as f64 * iterations(&newton)
+            }
+        }
+}
+
 pub(super) fn observer_settings(values: &[f64; COUNT]) -> BearingObserverSettings {
     let (bearing, sample_time) = (bearing(values), values[SAMPLE_TIME]);
     let (max_iterations, step_size) = (values[MAX_ITERATIONS] as u32, values[STEP_SIZE]);

@@ -2,11 +2,13 @@
 
 use crate::observer::windowed_newton::MAX_WINDOW;
 use crate::unit::Description;
+use crate::unit::longest_step::longest_step;
 use crate::unit::magnetic_bearing::{MAP, PRINTED, bias_flux, saturation_flux};
 use crate::unit::quantity::{
     DURATION, Enumeration, LENGTH, MAGNETIC_FLUX, POSITION_GAIN, RATE, RATIO, SQUARED_RATE,
     TIME as TIME_QUANTITY, VELOCITY, VELOCITY_GAIN, VOLTAGE,
 };
+use crate::unit::start_delay::start_delay;
 use crate::unit::variable::{Kind, Variability, Variable, variable_table};
 
 static OBSERVER_KIND: Enumeration = Enumeration {
@@ -111,6 +113,8 @@ variable_table! {
     SAMPLE_TIME = Variable::parameter("sample_time", Kind::Real(&DURATION), 1e-3)
         .range(1e-6, 1.0)
         .describe("T, the unit ticks at all multiples of it, whatever the communication step size");
+    START_DELAY = start_delay();
+    LONGEST_STEP = longest_step();
     OBSERVER = Variable::parameter("observer.kind", Kind::Enumeration(&OBSERVER_KIND), 1.0)
         .describe("State estimator");
     OBSERVER_MAP = Variable::parameter("observer.map", Kind::Enumeration(&MAP), PRINTED)

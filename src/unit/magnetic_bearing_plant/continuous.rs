@@ -31,7 +31,7 @@ impl MagneticBearingPlant {
     /// Partial derivatives of the first reading; the seed is no real number.
     fn first_reading_slope(&self, known: usize) -> f64 {
         let values = &self.values;
-        let sample = GaussianNoise::new(values[SENSOR_SEED] as u64, SENSOR_STREAM).sample();
+        let sample = Sensor::first_noise(values[SENSOR_SEED]);
         let resolution = values[SENSOR_RESOLUTION];
         match known {
             // The number of steps in the reading.
@@ -51,16 +51,28 @@ impl ContinuousUnit for MagneticBearingPlant {
         self.values[ACCELERATION_LOCAL] = self.bearing.acceleration(flux);
         self.values[FLUX_DERIVATIVE] = self.values[VOLTAGE_INPUT];
         self.values[FLUX_SIGN] = self.flux_sign_indicator();
+        if self.solver == Solver::Importer {
+            self.values[VOLTAGE_MEASURED] = self.values[VOLTAGE_INPUT];
+            if !self.sensor.is_read(self.solver) {
+                self.values[POSITION_MEASURED] = self.values[POSITION];
+            }
+        }
     }
 
-    fn enter_event(&mut self) {
-        self.values[VOLTAGE_MEASURED] = self.values[VOLTAGE_INPUT];
-        self.read_sensor();
+    fn set_solver(&mut self, solver: Solver) -> bool {
+        core::mem::replace(&mut self.solver, solver) != solver
     }
 
     fn update_discrete_states(&mut self) -> bool {
         self.settle_flux_sign();
+        if self.sensor.reaches_reading(self.values[TIME]) {
+            self.read_sensor(self.values[POSITION]);
+        }
         false
+    }
+
+    fn next_event_time(&self) -> Option<f64> {
+        self.sensor.next_reading(self.values[TIME])
     }
 
     fn partial_derivative(&self, unknown: usize, known: usize) -> f64 {
@@ -68,6 +80,8 @@ impl ContinuousUnit for MagneticBearingPlant {
         match (unknown, known) {
             (POSITION, POSITION) | (VELOCITY_OUTPUT, VELOCITY_OUTPUT) | (FLUX, FLUX) => 1.0,
             (POSITION_DERIVATIVE, VELOCITY_OUTPUT) | (FLUX_DERIVATIVE, VOLTAGE_INPUT) => 1.0,
+            (VOLTAGE_MEASURED, VOLTAGE_INPUT) if self.solver == Solver::Importer => 1.0,
+            (POSITION_MEASURED, POSITION) if !self.sensor.is_read(self.solver) => 1.0,
             (ACCELERATION_LOCAL, FLUX) => self.bearing.acceleration_slope(flux),
             (ACCELERATION_LOCAL, BIAS_FLUX | SATURATION_FLUX) => flux * self.epsilon_slope(known),
             _ => 0.0,
@@ -77,7 +91,7 @@ impl ContinuousUnit for MagneticBearingPlant {
     fn initial_partial_derivative(&self, unknown: usize, known: usize) -> f64 {
         match (unknown, known) {
             (EPSILON, _) => self.epsilon_slope(known),
-            (POSITION_MEASURED, _) => self.first_reading_slope(known),
+            (POSITION_MEASURED, _) if self.sensor.is_read(self.solver) => self.first_reading_slope(known),
             // The states start from parameters.
             (_, INITIAL_POSITION) => self.partial_derivative(unknown, POSITION),
             (_, INITIAL_VELOCITY) => self.partial_derivative(unknown, VELOCITY_OUTPUT),

@@ -2,10 +2,13 @@
 
 mod continuous;
 
+use super::input_ramp::end_of_ramp;
 use super::magnetic_bearing::{EXACT, MAP, bias_flux, map, saturation_flux};
 use super::quantity::{ACCELERATION, LENGTH, MAGNETIC_FLUX, RATIO, VELOCITY, VOLTAGE};
+use super::sensor::{Sensor, check_sample_time, sample_time};
 use super::variable::{Dependency, Kind, Variability, Variable, variable_table};
-use super::{ContinuousUnit, Description, Journal, Unit, UnitError, start_values};
+use super::work::require_affordable;
+use super::{ContinuousUnit, Description, Journal, Solver, Unit, UnitError, start_values};
 use crate::plant::magnetic_bearing::{MagneticBearing, State};
 use crate::signal::{GaussianNoise, quantise};
 use serde::{Deserialize, Serialize};
@@ -27,11 +30,18 @@ variable_table! {
         .initially_from(&["initial.flux"])
         .depends_on(&[Dependency::constant("flux")])
         .describe("x3, magnetic flux");
-    VOLTAGE_MEASURED = Variable::held_output("voltage_measured", Kind::Real(&VOLTAGE))
-        .describe("Mean voltage that acted over the last step, in model exchange the one before the last event; wire it to the controller's voltage_applied");
-    POSITION_MEASURED = Variable::held_output("position_measured", Kind::Real(&LENGTH))
-        .initially_from(&["initial.position", "sensor.noise", "sensor.resolution", "sensor.seed"])
-        .describe("Displacement with sensor noise and resolution, one reading per step, in model exchange per event");
+    VOLTAGE_MEASURED = Variable::output("voltage_measured", &VOLTAGE)
+        .initially_from(&["voltage"])
+        .depends_on(&[Dependency::dependent("voltage")])
+        .describe("Mean voltage that acted over the last step, in model exchange the one that acts; wire it to the \
+            controller's voltage_applied");
+    POSITION_MEASURED = Variable::output("position_measured", &LENGTH)
+        .initially_from(&[
+            "initial.position", "sensor.noise", "sensor.resolution", "sensor.sample_time", "sensor.seed",
+        ])
+        .depends_on(&[Dependency::dependent("position")])
+        .describe("Displacement with sensor noise and resolution, one reading per step or per sensor.sample_time; without \
+            the latter in model exchange the displacement itself");
     POSITION_DERIVATIVE = Variable::local("der(position)", Kind::Real(&VELOCITY), Variability::Continuous)
         .initially_from(&["initial.velocity"])
         .derivative_of("position")
@@ -75,6 +85,7 @@ variable_table! {
     SENSOR_RESOLUTION = Variable::tunable("sensor.resolution", Kind::Real(&LENGTH), 0.0)
         .range(0.0, 1.0)
         .describe("Step of the position sensor's output, 0 for none");
+    SENSOR_SAMPLE_TIME = sample_time();
     SENSOR_SEED = Variable::parameter("sensor.seed", Kind::Integer, 1.0)
         .range(0.0, i32::MAX as f64)
         .describe("Seed of sensor and process noise; the same seed gives the same run on every platform");
@@ -99,9 +110,9 @@ pub static DESCRIPTION: Description = Description {
          map = exact splits the step at the zero crossing, map = printed uses (4a) as it stands.",
         "For model exchange the states are position, velocity and flux, and the right-hand side is equation (3) itself, \
          without regard to map. The flux's change of sign is offered as a state event, since x3 |x3| has a kink there. \
-         voltage_measured and position_measured are discrete: they change at events only, when they take the voltage \
-         before the event and a new reading. In co-simulation the voltage may have a slope (input derivative of order \
-         1, FMI 2.0); the step is then solved exactly, too, whatever map is.",
+         Readings of the sensor are time events if sensor.sample_time is not 0; without it position_measured is the \
+         displacement itself there. voltage_measured is the voltage that acts. In co-simulation the voltage may have a \
+         slope (input derivative of order 1, FMI 2.0); the step is then solved exactly, too, whatever map is.",
         "Not in the paper: the sensor model and the process noise, which are off at the start values.",
     ],
     variables: &VARIABLES,
@@ -109,8 +120,7 @@ pub static DESCRIPTION: Description = Description {
     stop_time: 10.0,
 };
 
-/// Streams of the one seed.
-const SENSOR_STREAM: u64 = 1;
+/// Stream of the seed, another one than the sensor's.
 const PROCESS_STREAM: u64 = 2;
 
 /// The plant as a unit.
@@ -123,7 +133,8 @@ pub struct MagneticBearingPlant {
     voltage_slope: f64,
     /// On which side of zero the flux was at the last event.
     is_flux_positive: bool,
-    sensor_noise: GaussianNoise,
+    solver: Solver,
+    sensor: Sensor,
     process_noise: GaussianNoise,
 }
 
@@ -135,7 +146,8 @@ impl MagneticBearingPlant {
             bearing: MagneticBearing { epsilon: 0.0 },
             voltage_slope: 0.0,
             is_flux_positive: true,
-            sensor_noise: GaussianNoise::new(0, SENSOR_STREAM),
+            solver: Solver::default(),
+            sensor: Sensor::start(0.0, 0.0, 0.0),
             process_noise: GaussianNoise::new(0, PROCESS_STREAM),
         }
     }
@@ -151,13 +163,22 @@ impl MagneticBearingPlant {
         self.values[FLUX] = state.flux;
     }
 
-    fn read_sensor(&mut self) {
-        let position = self.values[POSITION];
-        let reading = match self.values[SENSOR_NOISE] {
-            0.0 => position,
-            deviation => position + deviation * self.sensor_noise.sample(),
-        };
+    /// Reads the sensor at a moment with this `position` \[m\].
+    fn read_sensor(&mut self, position: f64) {
+        let reading = self.sensor.read(position, self.values[SENSOR_NOISE]);
         self.values[POSITION_MEASURED] = quantise(reading, self.values[SENSOR_RESOLUTION]);
+    }
+
+    /// What becomes of a state in `duration` \[s\], the voltage beginning with `voltage` \[V\].
+    #[inline]
+    fn moved(&self, state: State, voltage: f64, duration: f64) -> Result<State, UnitError> {
+        let state = if self.voltage_slope == 0.0 {
+            self.bearing.advance(map(self.values[MAP_CHOICE]), state, voltage, duration)
+        } else {
+            self.bearing.advance_under_ramp(state, voltage, self.voltage_slope, duration)
+        };
+        check_finite(&state)?;
+        Ok(state)
     }
 }
 
@@ -195,32 +216,47 @@ impl Unit for MagneticBearingPlant {
             flux: values[INITIAL_FLUX],
         };
         self.is_flux_positive = state.flux >= 0.0;
-        let seed = values[SENSOR_SEED] as u64;
-        self.sensor_noise = GaussianNoise::new(seed, SENSOR_STREAM);
-        self.process_noise = GaussianNoise::new(seed, PROCESS_STREAM);
+        self.sensor = Sensor::start(values[SENSOR_SEED], values[SENSOR_SAMPLE_TIME], start_time);
+        self.process_noise = GaussianNoise::new(values[SENSOR_SEED] as u64, PROCESS_STREAM);
         self.set_state(state);
         self.evaluate();
-        self.read_sensor();
+        if self.sensor.is_read(self.solver) {
+            self.read_sensor(state.position);
+        }
         Ok(())
     }
 
+    fn check_parameters(&self) -> Result<(), UnitError> {
+        check_sample_time(self.values[SENSOR_SAMPLE_TIME])
+    }
+
     fn advance(&mut self, duration: f64, _: &mut dyn Journal) -> Result<(), UnitError> {
+        require_affordable(duration, self.sensor.load())?;
         let (voltage, slope) = (self.values[VOLTAGE_INPUT], self.voltage_slope);
-        let mut state = if slope == 0.0 {
-            self.bearing.advance(map(self.values[MAP_CHOICE]), self.state(), voltage, duration)
-        } else {
-            self.bearing.advance_under_ramp(self.state(), voltage, slope, duration)
-        };
-        check_finite(&state)?;
+        let end = end_of_ramp(&VARIABLES[VOLTAGE_INPUT], voltage, slope, duration)?;
+        let readings = self.sensor.readings_within(duration);
+        let mut state = self.state();
+        let (mut passed, mut sensed) = (0.0, None);
+        if let Some(last) = readings.last {
+            state = self.moved(state, voltage, last)?;
+            sensed = Some(state.position);
+            passed = last;
+        }
+        if passed < duration {
+            state = self.moved(state, voltage + slope * passed, duration - passed)?;
+        }
         if self.values[PROCESS_FLUX_NOISE] > 0.0 {
             state.flux += self.values[PROCESS_FLUX_NOISE] * self.process_noise.sample();
         }
         self.set_state(state);
-        self.values[VOLTAGE_INPUT] = voltage + slope * duration;
+        self.values[VOLTAGE_INPUT] = end;
         self.values[VOLTAGE_MEASURED] = voltage + 0.5 * slope * duration;
         self.settle_flux_sign();
         self.evaluate();
-        self.read_sensor();
+        self.sensor.skip_to_last(&readings, self.values[SENSOR_NOISE]);
+        if let Some(position) = sensed {
+            self.read_sensor(position);
+        }
         Ok(())
     }
 
@@ -228,6 +264,7 @@ impl Unit for MagneticBearingPlant {
         self.bearing == MagneticBearing::with_bias(self.values[BIAS_FLUX], self.values[SATURATION_FLUX])
             && check_finite(&self.state()).is_ok()
             && self.voltage_slope.is_finite()
+            && self.sensor.belongs_to(self.values[SENSOR_SAMPLE_TIME])
     }
 
     fn continuous(&mut self) -> Option<&mut dyn ContinuousUnit> {

@@ -1,7 +1,7 @@
 //! Memory that runs out, at every place where some is asked for: an error with a message, nothing leaked, and the
 //! instance goes on.
 
-mod allocator;
+pub mod allocator;
 
 use core::cell::{Cell, RefCell};
 use core::ffi::{CStr, c_char, c_void};
@@ -17,7 +17,7 @@ use maglev_fmu::fmi::fmi2::types::{
 use maglev_fmu::fmi::fmi2::*;
 use maglev_fmu::fmi::fmi3::*;
 use maglev_fmu::unit::variable::Kind;
-use maglev_fmu::unit::{Description, StartValues, UNITS};
+use maglev_fmu::unit::{Description, Edition, StartValues, UNITS};
 
 use super::harness::{BOTH, Component, ERROR, OK, Standard};
 
@@ -161,14 +161,14 @@ impl Way {
     }
 }
 
-/// The unit's token, with start values or without.
+/// The token of the unit in the edition that offers most, with start values or without.
 fn token(unit: &'static Description, has_start_values: bool) -> CString {
     let mut values = StartValues::default();
     let rows = unit.variables.iter().filter(|row| has_start_values && !row.is_calculated());
     for row in rows.filter(|row| matches!(row.kind, Kind::Real(_))) {
         values.set(unit, row.name, row.start).unwrap();
     }
-    CString::new(values.token(unit)).unwrap()
+    CString::new(values.token(unit, Edition::Clocked)).unwrap()
 }
 
 fn component(way: Way, unit: &'static Description, handle: *mut c_void) -> Component {

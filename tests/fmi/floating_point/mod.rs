@@ -2,13 +2,12 @@
 //! control word is the host's own again after every call and within its callbacks.
 
 mod callbacks;
-mod host;
+pub mod host;
 
 use core::ptr::null_mut;
 use std::hint::black_box;
 
-use host::{DEFAULT, ENVIRONMENTS};
-pub use host::{TRAPPING, hosted};
+use host::{DEFAULT, ENVIRONMENTS, hosted};
 use maglev_fmu::unit::variable::{Causality, Kind, Variable};
 use maglev_fmu::unit::{Description, UNITS};
 use proptest::prelude::*;

@@ -2,13 +2,12 @@
 
 use core::ffi::c_void;
 use core::ptr::null;
-use std::ffi::CString;
 
 use maglev_fmu::fmi::fmi3::types::*;
 use maglev_fmu::fmi::fmi3::*;
-use maglev_fmu::unit::UNITS;
+use maglev_fmu::unit::{Edition, UNITS};
 
-use super::{Component, OK, Recorder, Standard, description, fmi3_logger};
+use super::{Component, OK, Recorder, Standard, fmi3_logger, token};
 
 /// Names of all units that tick.
 pub fn sampled_units() -> impl Iterator<Item = &'static str> {
@@ -41,18 +40,23 @@ pub struct Choices {
 }
 
 impl Component {
-    /// A co-simulation instance; its recorder is the environment of the callback.
+    /// A co-simulation instance that knows the unit's clocks; its recorder is the environment of the callback.
     pub fn co_simulation(unit: &str, choices: Choices) -> Self {
+        Self::co_simulation_of(Edition::Clocked, unit, choices)
+    }
+
+    /// As [`Component::co_simulation`], of any edition.
+    pub fn co_simulation_of(edition: Edition, unit: &str, choices: Choices) -> Self {
         let recorder = Box::new(Recorder::default());
         let environment = recorder.environment();
-        let handle = co_simulation(unit, choices, environment);
+        let handle = co_simulation_of(edition, unit, choices, environment);
         assert!(!handle.is_null(), "{unit}: {:?}", recorder.messages());
         Self::from_handle(Standard::Fmi3, unit, handle, recorder)
     }
 
     pub fn scheduled(unit: &str, clock_update: Option<fmi3ClockUpdateCallback>) -> Self {
         let recorder = Box::new(Recorder::default());
-        let token = CString::new(description(unit).token().as_str()).unwrap();
+        let token = token(unit, Edition::Clocked);
         // SAFETY: C strings, a recorder that outlives the instance; nothing else is given.
         let handle = unsafe {
             let (name, environment, log) = (c"scheduled".as_ptr(), recorder.environment(), fmi3_logger as _);
@@ -146,7 +150,17 @@ impl Component {
 
 /// As [`Component::co_simulation`], null if refused.
 pub fn co_simulation(unit: &str, choices: Choices, environment: *mut c_void) -> fmi3Instance {
-    let token = CString::new(description(unit).token().as_str()).unwrap();
+    co_simulation_of(Edition::Clocked, unit, choices, environment)
+}
+
+/// As [`Component::co_simulation_of`], null if refused.
+pub fn co_simulation_of(
+    edition: Edition,
+    unit: &str,
+    choices: Choices,
+    environment: *mut c_void,
+) -> fmi3Instance {
+    let token = token(unit, edition);
     // SAFETY: C strings; the callers keep the environment alive.
     unsafe {
         fmi3InstantiateCoSimulation(

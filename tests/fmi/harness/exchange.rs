@@ -78,8 +78,14 @@ impl Component {
         has_jumped
     }
 
-    /// Status, and whether a state jumped; nothing else is ever wanted of the importer.
+    /// Status, and whether a state jumped.
     pub fn try_update_discrete_states(&self) -> (i32, bool) {
+        let (status, has_jumped, _) = self.event_iteration();
+        (status, has_jumped)
+    }
+
+    /// Status, whether a state jumped, and the time of the next event \[s\]; nothing else is ever wanted of the importer.
+    pub fn event_iteration(&self) -> (i32, bool, Option<f64>) {
         // SAFETY: a live handle; all results have room.
         unsafe {
             match self.standard {
@@ -97,13 +103,14 @@ impl Component {
                         info.new_discrete_states_needed,
                         info.terminate_simulation,
                         info.nominals_of_continuous_states_changed,
-                        info.next_event_time_defined,
                     ];
-                    assert_eq!(quiet, [0; 4]);
-                    (status, info.values_of_continuous_states_changed != 0)
+                    assert_eq!(quiet, [0; 3]);
+                    let next = (info.next_event_time_defined != 0).then_some(info.next_event_time);
+                    (status, info.values_of_continuous_states_changed != 0, next)
                 }
                 Standard::Fmi3 => {
                     let (mut needed, mut terminate, mut nominals, mut changed, mut defined) = (0, 0, 0, 0, 0);
+                    let mut next = 0.0;
                     let status = fmi3UpdateDiscreteStates(
                         self.handle,
                         &mut needed,
@@ -111,10 +118,10 @@ impl Component {
                         &mut nominals,
                         &mut changed,
                         &mut defined,
-                        &mut 0.0,
+                        &mut next,
                     );
-                    assert_eq!([needed, terminate, nominals, defined], [0; 4]);
-                    (status, changed != 0)
+                    assert_eq!([needed, terminate, nominals], [0; 3]);
+                    (status, changed != 0, (defined != 0).then_some(next))
                 }
             }
         }
@@ -240,8 +247,15 @@ impl Component {
     #[track_caller]
     pub fn output_slope(&self, output: u32) -> f64 {
         let mut result = [f64::NAN];
+        let status = self.try_output_slope(output, &mut result);
+        assert_eq!(status, OK, "{:?}", self.recorder.messages());
+        result[0]
+    }
+
+    /// As [`Component::output_slope`], with the status.
+    pub fn try_output_slope(&self, output: u32, result: &mut [f64; 1]) -> i32 {
         // SAFETY: a live handle, arrays of one element.
-        let status = unsafe {
+        unsafe {
             match self.standard {
                 Standard::Fmi2 => {
                     fmi2GetRealOutputDerivatives(self.handle, &output, 1, &1, result.as_mut_ptr())
@@ -250,8 +264,6 @@ impl Component {
                     fmi3GetOutputDerivatives(self.handle, &output, 1, &1, result.as_mut_ptr(), 1)
                 }
             }
-        };
-        assert_eq!(status, OK, "{:?}", self.recorder.messages());
-        result[0]
+        }
     }
 }

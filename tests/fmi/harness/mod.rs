@@ -16,7 +16,7 @@ use maglev_fmu::fmi::fmi2::*;
 use maglev_fmu::fmi::fmi3::types::fmi3Boolean;
 use maglev_fmu::fmi::fmi3::*;
 use maglev_fmu::unit::variable::Causality;
-use maglev_fmu::unit::{Description, UNITS};
+use maglev_fmu::unit::{Description, Edition, UNITS};
 
 #[allow(unused_imports, reason = "each test binary uses a part")]
 pub use exchange::plants;
@@ -68,6 +68,11 @@ impl Phase {
     }
 }
 
+/// Instantiation token of an edition of a unit.
+pub fn token(unit: &str, edition: Edition) -> CString {
+    CString::new(edition.token(description(unit)).as_str()).unwrap()
+}
+
 pub fn description(unit: &str) -> &'static Description {
     UNITS.iter().find(|known| known.description.name == unit).expect("a unit").description
 }
@@ -91,7 +96,7 @@ impl Component {
 
     pub fn with_logging(standard: Standard, unit: &str, logging_on: bool) -> Self {
         let recorder = Box::new(Recorder::default());
-        let token = CString::new(description(unit).token().as_str()).unwrap();
+        let token = token(unit, Edition::Plain);
         // SAFETY: C strings and callbacks that live long enough.
         let handle = unsafe {
             instantiate(standard, c"under test".as_ptr(), token.as_ptr(), recorder.environment(), logging_on)

@@ -4,17 +4,17 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use maglev_fmu::host::{Fmu, Instance, Logging};
-use maglev_fmu::package::{FmiVersion, GenerationTime, Library, build};
+use maglev_fmu::package::{Form, GenerationTime, Library, build};
 
-/// An FMU of the magnetic bearing.
-pub fn open(version: FmiVersion, unit: &str) -> Fmu {
-    let path = packages().join(version.directory()).join(unit).with_extension("fmu");
+/// An FMU; a version stands for its plain form.
+pub fn open(form: impl Into<Form>, unit: &str) -> Fmu {
+    let path = packages().join(form.into().directory()).join(unit).with_extension("fmu");
     Fmu::open(&path).unwrap()
 }
 
 /// An instance with parameters, logging on, to be initialised.
-pub fn instantiate(version: FmiVersion, unit: &str, parameters: &[(&str, f64)]) -> Instance {
-    let mut instance = open(version, unit).instantiate(unit, Logging::On).unwrap();
+pub fn instantiate(form: impl Into<Form>, unit: &str, parameters: &[(&str, f64)]) -> Instance {
+    let mut instance = open(form, unit).instantiate(unit, Logging::On).unwrap();
     for (name, value) in parameters {
         let handle = instance.variable(name).unwrap();
         instance.set(handle, *value).unwrap();

@@ -1,7 +1,7 @@
 //! Whether arguments make sense, by the model description and by what went before.
 
 use super::super::harness::Standard;
-use super::super::standard::{Causality, Deviations, Kind, ModelDescription, State, Variability, Variable};
+use super::super::standard::{Causality, Kind, ModelDescription, State, Variability, Variable};
 use super::call::{Call, Category, Damage, Experiment};
 use super::model::Model;
 use super::oracle::Oracle;
@@ -144,7 +144,6 @@ pub fn judge(oracle: &Oracle, call: &Call, saved: &dyn Fn(usize) -> Option<Model
         Call::Save { .. } | Call::Free { .. } => Good,
         Call::Restore { slot } => match saved(*slot) {
             None => Wrong,
-            Some(_) if Deviations::listed().has("states-not-restored") => Open,
             // Made of forged bytes, or by another interface type.
             Some(state) if !state.is_known => Open,
             Some(_) => Good,
@@ -157,11 +156,6 @@ pub fn judge(oracle: &Oracle, call: &Call, saved: &dyn Fn(usize) -> Option<Model
             Damage::Flip { .. } | Damage::Cut { .. } => Wrong,
         },
     }
-}
-
-/// What comes of undamaged bytes of this unit.
-pub fn of_saved_states() -> Arguments {
-    if Deviations::listed().has("states-not-restored") { Open } else { Good }
 }
 
 fn wrong_if(is_wrong: bool) -> Arguments {

@@ -1,6 +1,6 @@
 //! What has to hold after every call, whatever it was.
 
-use super::super::standard::{Deviations, State};
+use super::super::standard::State;
 use super::answer::Answer;
 use super::call::Call;
 use super::dice::Dice;
@@ -106,7 +106,7 @@ impl Session {
             let mut dice = self.dice.borrow_mut();
             (dice.percent(12), dice.percent(25))
         };
-        if saves && !Deviations::listed().has("states-not-restored") {
+        if saves {
             let mut state = core::ptr::null_mut();
             if self.deserialise(&now, &mut state) != 0 {
                 return Err(format!("the state after {call:?} cannot be restored: {}", self.log.text()));

@@ -139,7 +139,7 @@ impl Session {
             // The same token in both standards, but not of every package.
             _ if !is_of_this_unit => Arguments::Open,
             _ if !is_whole || model.as_ref().is_none_or(|model| !model.is_known) => Arguments::Open,
-            _ => super::arguments::of_saved_states(),
+            _ => Arguments::Good,
         };
         Verdict { arguments, ..verdict }
     }

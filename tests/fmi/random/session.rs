@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
 use super::super::harness::Standard;
-use super::super::standard::State;
+use super::super::standard::{Interface, State};
 use super::answer::Answer;
 use super::call::Call;
 use super::dice::Dice;
@@ -71,6 +71,12 @@ impl Session {
         let choices = Choices::new(&scenario, &mut dice);
         let held = environment::held();
         let session = Self::new(scenario, choices, dice, foreign, mood)?;
+        if scenario.interface == Interface::CoSimulation
+            && scenario.can("hasEventMode")
+            && !session.choices.has_events
+        {
+            session.tally.borrow_mut().meet("clocks-without-events");
+        }
         CURRENT.set(&session);
         let outcome = session.calls(count);
         CURRENT.set(core::ptr::null());
@@ -189,6 +195,12 @@ impl Session {
             return Err(format!("computes for {duration:?}"));
         }
         self.check_status(&call, &verdict, &answer)?;
+        if self.scenario.description.standard == Standard::Fmi3
+            && !self.choices.logging_on
+            && self.log.complaints() > 0
+        {
+            self.tally.borrow_mut().meet("errors-always-logged");
+        }
         self.tally.borrow_mut().count(self, &call, &verdict, &answer, duration);
         if answer.status == 0 {
             self.check_results(&call, &answer)?;

@@ -91,6 +91,11 @@ impl Tally {
         }
     }
 
+    /// A deviation that no single call shows.
+    pub fn meet(&mut self, deviation: &'static str) {
+        *self.deviations.entry(deviation).or_default() += 1;
+    }
+
     pub fn add(&mut self, other: Self) {
         for (sum, more) in self.statuses.iter_mut().zip(other.statuses) {
             *sum += more;

@@ -9,9 +9,10 @@ use std::ffi::CString;
 
 use importer::{Importer, Language};
 use maglev_fmu::fmi::fmi3::{fmi3InstantiateCoSimulation, fmi3InstantiateScheduledExecution};
+use maglev_fmu::unit::Edition;
 
-use super::failing_memory::blocks;
-use super::harness::{BOTH, CONTROLLER, Component, ERROR, OK, Standard, description, instantiate_with};
+use super::failing_memory::allocator::blocks;
+use super::harness::{self, BOTH, CONTROLLER, Component, ERROR, OK, Standard, description, instantiate_with};
 
 /// Runs `check` with an importer in every language for which there is a compiler.
 fn in_each_language(test: &str, check: impl Fn(&Importer)) {
@@ -22,7 +23,7 @@ fn in_each_language(test: &str, check: impl Fn(&Importer)) {
 /// Result of `call` if no callback left it, in a host that traps: its control word stays its own in any case.
 #[cfg(target_arch = "x86_64")]
 fn protect(importer: &Importer, call: impl FnMut() -> i32) -> Option<i32> {
-    use super::floating_point::{TRAPPING, hosted};
+    use super::floating_point::host::{TRAPPING, hosted};
     hosted(TRAPPING, || importer.protect(call))
 }
 
@@ -32,7 +33,7 @@ fn protect(importer: &Importer, call: impl FnMut() -> i32) -> Option<i32> {
 }
 
 fn token() -> CString {
-    CString::new(description(CONTROLLER).token().as_str()).unwrap()
+    harness::token(CONTROLLER, Edition::Clocked)
 }
 
 fn instantiate(importer: &Importer, standard: Standard, token: &CString, logging_on: bool) -> *mut c_void {

@@ -15,7 +15,7 @@ use super::common::{
 use super::roles;
 use crate::package::{Capabilities, FmiVersion, GenerationTime, licenses};
 use crate::unit::variable::{Kind, Variable};
-use crate::unit::{Description, StartValues};
+use crate::unit::{Description, Edition, StartValues};
 
 impl ModelDescription {
     pub fn new(
@@ -27,7 +27,7 @@ impl ModelDescription {
         Self {
             fmi_version: FmiVersion::Two.text(),
             model_name: description.name,
-            guid: start_values.token(description),
+            guid: start_values.token(description, Edition::Plain),
             description: description.summary,
             version: VERSION,
             copyright: licenses::COPYRIGHT,
@@ -58,7 +58,7 @@ impl ModelDescription {
 
 impl ModelExchange {
     fn new(description: &Description) -> Self {
-        let can = Capabilities::of(description);
+        let can = Capabilities::of(description, Edition::Plain);
         Self {
             model_identifier: description.name,
             needs_execution_tool: can.needs_execution_tool,
@@ -74,7 +74,7 @@ impl ModelExchange {
 
 impl CoSimulation {
     fn new(description: &Description) -> Self {
-        let can = Capabilities::of(description);
+        let can = Capabilities::of(description, Edition::Plain);
         Self {
             model_identifier: description.name,
             needs_execution_tool: can.needs_execution_tool,

@@ -131,14 +131,12 @@ pub struct TypeDefinitions {
 }
 
 /// Unit, display unit, quantity and nominal value stand here and nowhere else: not every importer takes them on
-/// a variable.
+/// a variable. No description does: FMPy before 0.3.24 refuses types that have one.
 #[derive(Serialize)]
 pub enum Type {
     Float64Type {
         #[serde(rename = "@name")]
         name: &'static str,
-        #[serde(rename = "@description")]
-        description: &'static str,
         #[serde(rename = "@quantity")]
         quantity: &'static str,
         #[serde(rename = "@unit")]
@@ -151,8 +149,6 @@ pub enum Type {
     EnumerationType {
         #[serde(rename = "@name")]
         name: &'static str,
-        #[serde(rename = "@description")]
-        description: &'static str,
         #[serde(rename = "Item")]
         items: Vec<Item>,
     },
@@ -185,10 +181,16 @@ pub struct ClockAttributes {
     pub causality: &'static str,
     #[serde(rename = "@variability")]
     pub variability: &'static str,
+    /// Clocks at whose ticks this one may tick.
+    #[serde(rename = "@clocks", skip_serializing_if = "Option::is_none")]
+    pub clocks: Option<String>,
     #[serde(rename = "@priority", skip_serializing_if = "Option::is_none")]
     pub priority: Option<u32>,
     #[serde(rename = "@intervalVariability")]
     pub interval_variability: &'static str,
+    /// \[s\]
+    #[serde(rename = "@intervalDecimal", skip_serializing_if = "Option::is_none")]
+    pub interval_decimal: Option<String>,
     #[serde(rename = "@supportsFraction", skip_serializing_if = "Option::is_none")]
     pub supports_fraction: Option<bool>,
 }

@@ -14,21 +14,25 @@ use super::common::{
 };
 use super::roles;
 use crate::package::{Capabilities, FmiVersion, GenerationTime, licenses};
-use crate::unit::sampled::ClockVariable;
+use crate::unit::sampled::{ClockVariable, SAMPLE_TIME};
 use crate::unit::variable::{Kind, Variable};
-use crate::unit::{Description, StartValues};
+use crate::unit::{Description, Edition, StartValues};
 
 impl ModelDescription {
     pub fn new(
         description: &'static Description,
+        edition: Edition,
         start_values: &StartValues,
         time: Option<GenerationTime>,
     ) -> Self {
+        let can = Capabilities::of(description, edition);
         let variables = description.variables.iter().enumerate();
+        let input_clocks = input_clocks(description, edition);
+        let clocks = edition.clocks(description);
         Self {
             fmi_version: FmiVersion::Three.text(),
             model_name: description.name,
-            instantiation_token: start_values.token(description),
+            instantiation_token: start_values.token(description, edition),
             description: description.summary,
             version: VERSION,
             copyright: licenses::COPYRIGHT,
@@ -36,9 +40,11 @@ impl ModelDescription {
             generation_tool: GENERATION_TOOL,
             generation_time: time.map(|time| time.to_string()),
             variable_naming_convention: "structured",
-            model_exchange: description.offers_model_exchange().then(|| ModelExchange::new(description)),
-            co_simulation: CoSimulation::new(description),
-            scheduled_execution: ScheduledExecution::new(description),
+            model_exchange: description.offers_model_exchange().then(|| ModelExchange::new(description, can)),
+            co_simulation: CoSimulation::new(description, can),
+            scheduled_execution: can
+                .offers_scheduled_execution
+                .then(|| ScheduledExecution::new(description, can)),
             unit_definitions: UnitDefinitions::new(description),
             type_definitions: TypeDefinitions::new(description),
             log_categories: LogCategories::new(),
@@ -48,19 +54,18 @@ impl ModelDescription {
                     .map(|(reference, variable)| {
                         TypedVariable::new(description, reference, variable, start_values)
                     })
-                    .chain(
-                        description.clocks().map(|(reference, clock)| TypedVariable::clock(reference, clock)),
-                    )
+                    .chain(clocks.map(|(reference, clock)| {
+                        TypedVariable::clock(description, reference, clock, &input_clocks, start_values)
+                    }))
                     .collect(),
             },
-            model_structure: ModelStructure::new(description),
+            model_structure: ModelStructure::new(description, edition),
         }
     }
 }
 
 impl ModelExchange {
-    fn new(description: &Description) -> Self {
-        let can = Capabilities::of(description);
+    fn new(description: &Description, can: Capabilities) -> Self {
         Self {
             model_identifier: description.name,
             needs_execution_tool: can.needs_execution_tool,
@@ -77,8 +82,7 @@ impl ModelExchange {
 }
 
 impl CoSimulation {
-    fn new(description: &Description) -> Self {
-        let can = Capabilities::of(description);
+    fn new(description: &Description, can: Capabilities) -> Self {
         Self {
             model_identifier: description.name,
             needs_execution_tool: can.needs_execution_tool,
@@ -100,9 +104,8 @@ impl CoSimulation {
 }
 
 impl ScheduledExecution {
-    fn new(description: &Description) -> Option<Self> {
-        let can = Capabilities::of(description);
-        can.offers_scheduled_execution.then_some(Self {
+    fn new(description: &Description, can: Capabilities) -> Self {
+        Self {
             model_identifier: description.name,
             needs_execution_tool: can.needs_execution_tool,
             can_be_instantiated_only_once_per_process: can.can_be_instantiated_only_once_per_process,
@@ -111,7 +114,7 @@ impl ScheduledExecution {
             provides_directional_derivatives: can.provides_directional_derivatives,
             provides_adjoint_derivatives: can.provides_adjoint_derivatives,
             provides_per_element_dependencies: can.provides_per_element_dependencies,
-        })
+        }
     }
 }
 
@@ -119,7 +122,6 @@ impl TypeDefinitions {
     fn new(description: &Description) -> Self {
         let reals = quantities(description).into_iter().map(|quantity| Type::Float64Type {
             name: quantity.name,
-            description: quantity.description,
             quantity: quantity.name,
             unit: quantity.unit.name,
             display_unit: quantity.unit.display.map(|(name, _)| name),
@@ -127,7 +129,6 @@ impl TypeDefinitions {
         });
         let enumerations = enumerations(description).into_iter().map(|enumeration| Type::EnumerationType {
             name: enumeration.name,
-            description: enumeration.description,
             items: Item::all(enumeration),
         });
         Self { types: reals.chain(enumerations).collect() }
@@ -135,17 +136,31 @@ impl TypeDefinitions {
 }
 
 impl TypedVariable {
-    fn clock(value_reference: usize, clock: &ClockVariable) -> Self {
-        // The interval follows from a fixed parameter, so the clock is a fixed one without intervalDecimal; section
-        // 2.4.5.1 asks for that attribute, but by section 2.2.9.1 an importer would then have to set the interval.
+    /// An output clock ticks when one of the `input_clocks` does: it is bound to them, and may be asked for at their
+    /// ticks only.
+    ///
+    /// The interval of an input clock is what the parameter sample_time starts with. An importer may set either, with the
+    /// same effect (section 2.4.5.1 asks for the attribute, section 2.2.9.2 has the importer set the interval then).
+    fn clock(
+        description: &Description,
+        value_reference: usize,
+        clock: &ClockVariable,
+        input_clocks: &str,
+        start_values: &StartValues,
+    ) -> Self {
+        let sample_time = description.find(SAMPLE_TIME).filter(|_| clock.is_input);
         Self::Clock(ClockAttributes {
             name: clock.name,
             value_reference,
             description: clock.description,
             causality: if clock.is_input { "input" } else { "output" },
             variability: "discrete",
+            clocks: (!clock.is_input).then(|| input_clocks.to_owned()),
             priority: clock.is_input.then_some(0),
             interval_variability: if clock.is_input { "fixed" } else { "triggered" },
+            interval_decimal: sample_time.and_then(|(reference, variable)| {
+                roles::start(variable, start_values.of(reference, variable))
+            }),
             supports_fraction: clock.is_input.then_some(true),
         })
     }
@@ -181,21 +196,25 @@ impl TypedVariable {
     }
 }
 
-/// Clocks that the unit activates: a tick of the input clocks is one of theirs.
-fn output_clocks(description: &Description) -> impl Iterator<Item = Unknown> {
-    let clocks = |is_input| {
-        let clocks = description.clocks().filter(move |(_, clock)| clock.is_input == is_input);
-        clocks.map(|(reference, _)| reference)
-    };
-    clocks(false).map(move |value_reference| Unknown {
-        value_reference,
-        dependencies: clocks(true).map(|reference| reference.to_string()).collect::<Vec<_>>().join(" "),
-        dependencies_kind: Some(clocks(true).map(|_| "dependent").collect::<Vec<_>>().join(" ")),
+/// Value references of the clocks that the importer activates.
+fn input_clocks(description: &Description, edition: Edition) -> String {
+    let inputs = edition.clocks(description).filter(|(_, clock)| clock.is_input);
+    inputs.map(|(reference, _)| reference.to_string()).collect::<Vec<_>>().join(" ")
+}
+
+/// Clocks that the unit activates. They are bound to the input clocks, and depend on them, too: dependencies on clocks
+/// have to be listed (section 2.4.8).
+fn output_clocks(description: &Description, edition: Edition) -> impl Iterator<Item = Unknown> {
+    let outputs = edition.clocks(description).filter(|(_, clock)| !clock.is_input);
+    outputs.map(move |(value_reference, _)| {
+        let dependencies = input_clocks(description, edition);
+        let kinds = vec!["dependent"; dependencies.split_whitespace().count()];
+        Unknown { value_reference, dependencies, dependencies_kind: Some(kinds.join(" ")) }
     })
 }
 
 impl ModelStructure {
-    fn new(description: &Description) -> Self {
+    fn new(description: &Description, edition: Edition) -> Self {
         let unknown = |value_reference, dependencies: roles::Dependencies| Unknown {
             value_reference,
             dependencies: dependencies.list(0),
@@ -206,17 +225,12 @@ impl ModelStructure {
         Self {
             outputs: roles::outputs(description)
                 .map(at_an_instant)
-                .chain(output_clocks(description))
+                .chain(output_clocks(description, edition))
                 .collect(),
             derivatives: roles::derivatives(description).map(at_an_instant).collect(),
+            // Output clocks are bound to input clocks, and clocked variables need not be listed (section 2.4.8).
             initial_unknowns: roles::initial_unknowns(description)
                 .map(|(reference, dependencies)| unknown(reference, dependencies))
-                // No clock is active during initialisation.
-                .chain(output_clocks(description).map(|clock| Unknown {
-                    dependencies: String::new(),
-                    dependencies_kind: None,
-                    ..clock
-                }))
                 .collect(),
             event_indicators: description.event_indicators().map(at_an_instant).collect(),
         }

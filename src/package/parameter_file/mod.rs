@@ -13,12 +13,16 @@
 //! knows their names, and read by number or name. `units` is for people and, where given, must be right. `provenance`
 //! is anything.
 
-use std::fs;
+mod reading;
+mod unique_keys;
+
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use thiserror::Error;
+
+pub use reading::LARGEST;
 
 use super::{PackageError, WrittenFile, replace_file};
 use crate::unit::start_values::StartValueError;
@@ -31,10 +35,11 @@ use crate::unit::{Description, StartValues, UNITS};
 pub struct ParameterFile {
     /// Name of the unit.
     pub unit: String,
+    #[serde(deserialize_with = "unique_keys::map")]
     pub values: Map<String, Value>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "unique_keys::map")]
     pub units: Map<String, Value>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "unique_keys::value")]
     pub provenance: Value,
 }
 
@@ -45,11 +50,13 @@ pub enum ParameterFileError {
     Read { path: PathBuf, source: std::io::Error },
     #[error("{} is no parameter file", .path.display())]
     Syntax { path: PathBuf, source: serde_json::Error },
-    #[error("there is no unit {name}, expected one of {}", unit_names())]
+    #[error("{} is in UTF-16, expected UTF-8", .path.display())]
+    Encoding { path: PathBuf },
+    #[error("there is no unit {}, expected one of {}", name.escape_debug(), unit_names())]
     UnknownUnit { name: String },
-    #[error("{name} = {value}: expected {expected}")]
+    #[error("{} = {value}: expected {expected}", name.escape_debug())]
     WrongKind { name: String, value: Value, expected: String },
-    #[error("{name} is given in {given}: expected {expected}")]
+    #[error("{} is given in {given}: expected {expected}", name.escape_debug())]
     WrongUnit { name: String, given: Value, expected: String },
     #[error(transparent)]
     StartValue(#[from] StartValueError),
@@ -75,13 +82,6 @@ impl ParameterFile {
             units.insert(name.to_owned(), unit_text(variable, value).into());
         }
         Ok(Self { unit: description.name.to_owned(), values, units, provenance })
-    }
-
-    pub fn read(path: &Path) -> Result<Self, ParameterFileError> {
-        let text =
-            fs::read(path).map_err(|source| ParameterFileError::Read { path: path.to_owned(), source })?;
-        serde_json::from_slice(&text)
-            .map_err(|source| ParameterFileError::Syntax { path: path.to_owned(), source })
     }
 
     pub fn write(&self, path: &Path) -> Result<WrittenFile, ParameterFileError> {
@@ -189,6 +189,7 @@ mod tests {
     use super::*;
     use crate::unit::MAGNETIC_BEARING_CONTROLLER as CONTROLLER;
     use serde_json::json;
+    use std::fs;
 
     fn file(values: Value, units: Value) -> ParameterFile {
         let text = json!({ "unit": "MagneticBearingController", "values": values, "units": units });
@@ -238,5 +239,18 @@ mod tests {
         assert_eq!(wrong_unit, "sample_time is given in \"ms\": expected s");
         let unknown = ParameterFile { unit: "Pendulum".to_owned(), ..file(json!({}), json!({})) };
         assert!(unknown.start_values().unwrap_err().to_string().contains("MagneticBearingController"));
+    }
+
+    /// Guards: names from a file that colour the terminal or hide what a message says.
+    #[test]
+    fn names_are_printed_escaped() {
+        let name = "\u{1b}[31m\u{202e}gain\n";
+        let unknown = ParameterFile { unit: name.to_owned(), ..file(json!({}), json!({})) };
+        for message in [
+            file(json!({ name: 1 }), json!({})).start_values().unwrap_err().to_string(),
+            unknown.start_values().unwrap_err().to_string(),
+        ] {
+            assert!(message.contains(r"\u{1b}[31m\u{202e}gain\n"), "{message}");
+        }
     }
 }

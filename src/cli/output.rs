@@ -1,0 +1,48 @@
+//! Standard output, with every failure to write it told.
+
+use std::error::Error;
+use std::fmt;
+use std::io::{self, BufWriter, Write};
+
+use maglev_fmu::package::WrittenFile;
+
+/// Standard output could not be written.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot write to standard output")]
+pub struct OutputError(#[from] io::Error);
+
+impl OutputError {
+    /// The reader has closed the pipe: it has seen enough, such as `head`.
+    pub fn is_closed_pipe(error: &(dyn Error + 'static)) -> bool {
+        let output: Option<&Self> = error.downcast_ref();
+        output.is_some_and(|OutputError(reason)| reason.kind() == io::ErrorKind::BrokenPipe)
+    }
+}
+
+/// Prints a line.
+pub fn say(line: fmt::Arguments<'_>) -> Result<(), OutputError> {
+    Ok(writeln!(io::stdout(), "{line}")?)
+}
+
+/// Tells the user about a file.
+pub fn report(WrittenFile { path, size }: &WrittenFile) -> Result<(), OutputError> {
+    say(format_args!("{:>9.1} kB  {}", *size as f64 / 1e3, path.display()))
+}
+
+/// Many lines, written in blocks.
+pub struct Lines(BufWriter<io::StdoutLock<'static>>);
+
+impl Lines {
+    pub fn new() -> Self {
+        Self(BufWriter::new(io::stdout().lock()))
+    }
+
+    pub fn say(&mut self, line: fmt::Arguments<'_>) -> Result<(), OutputError> {
+        Ok(writeln!(self.0, "{line}")?)
+    }
+
+    /// Writes what is left; without it, a failure at the end would go unseen.
+    pub fn finish(mut self) -> Result<(), OutputError> {
+        Ok(self.0.flush()?)
+    }
+}

@@ -1,0 +1,179 @@
+//! `THIRD-PARTY.txt`: the crates that are linked into the shared library, with the texts of their licences.
+//!
+//! Written from the tree of dependencies as Cargo resolves it, and from the texts as the crates carry them, so that it
+//! is complete whatever comes in by way of others.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use cargo_metadata::{CargoOpt, DependencyKind, Metadata, MetadataCommand, Package, PackageId, TargetKind};
+use spdx::Expression;
+use thiserror::Error;
+
+use super::licenses;
+
+/// Place of the file in the repository.
+pub const PATH: &str = "assets/licenses/THIRD-PARTY.txt";
+
+/// Licences under which the library takes crates, the preferred one first, and the names of the files in crates that
+/// hold their texts, those of crates with one licence last.
+const ACCEPTED: [(&str, &[&str]); 2] = [
+    ("MIT", &["LICENSE-MIT", "LICENSE", "LICENSE.txt", "LICENSE.md"]),
+    ("Apache-2.0", &["LICENSE-APACHE", "LICENSE", "LICENSE.txt", "LICENSE.md"]),
+];
+
+/// Part of every library, and of no tree of dependencies.
+const STANDARD_LIBRARY: Crate<'_> = Crate {
+    name: "Rust standard library",
+    version: String::new(),
+    declared: "MIT OR Apache-2.0",
+    license: "MIT",
+    repository: "https://github.com/rust-lang/rust",
+};
+const STANDARD_LIBRARY_COPYRIGHT: &str = "Copyright (c) The Rust Project Contributors";
+
+/// Why the file could not be written.
+#[derive(Debug, Error)]
+pub enum ThirdPartyError {
+    #[error("cannot tell the tree of dependencies")]
+    Dependencies(#[from] cargo_metadata::Error),
+    #[error("the tree of dependencies has no root")]
+    NoRoot,
+    #[error("{name} {version} declares the licence {declared:?}: expected one that allows MIT or Apache-2.0")]
+    License { name: String, version: String, declared: String },
+    #[error("{name} {version} carries no text of its {license} licence: expected one of {expected:?} in {}", .directory.display())]
+    NoText {
+        name: String,
+        version: String,
+        license: &'static str,
+        expected: &'static [&'static str],
+        directory: PathBuf,
+    },
+}
+
+/// A row of the list.
+struct Crate<'a> {
+    name: &'a str,
+    version: String,
+    declared: &'a str,
+    license: &'static str,
+    repository: &'a str,
+}
+
+impl Crate<'_> {
+    fn title(&self) -> String {
+        format!("{} {}", self.name, self.version).trim_end().to_owned()
+    }
+}
+
+/// Contents of the file for the sources below `root`, with the versions that `Cargo.lock` names.
+pub fn third_party(root: &Path) -> Result<String, ThirdPartyError> {
+    let metadata = MetadataCommand::new()
+        .manifest_path(root.join("Cargo.toml"))
+        .features(CargoOpt::NoDefaultFeatures)
+        .other_options(["--locked".to_owned()])
+        .exec()?;
+    let mut rows = Vec::new();
+    let mut texts: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for package in linked_packages(&metadata)? {
+        let row = row(package)?;
+        texts.entry(text(package, row.license)?).or_default().push(row.title());
+        rows.push(row);
+    }
+    // The project's own text is the common one but for whom it names.
+    let standard = licenses::LICENSE.replace(licenses::COPYRIGHT, STANDARD_LIBRARY_COPYRIGHT);
+    texts.entry(normalised(&standard)).or_default().push(STANDARD_LIBRARY.title());
+    rows.push(STANDARD_LIBRARY);
+    Ok(document(&rows, &texts))
+}
+
+/// The packages that the library is linked with, by name: normal dependencies of the root without features, and theirs.
+/// Procedural macros run in the compiler only.
+fn linked_packages(metadata: &Metadata) -> Result<Vec<&Package>, ThirdPartyError> {
+    let resolve = metadata.resolve.as_ref().ok_or(ThirdPartyError::NoRoot)?;
+    let root = resolve.root.as_ref().ok_or(ThirdPartyError::NoRoot)?;
+    let is_linked = |id: &PackageId| {
+        metadata[id].targets.iter().all(|target| !target.kind.contains(&TargetKind::ProcMacro))
+    };
+    let mut found = BTreeSet::new();
+    let mut open = vec![root];
+    while let Some(id) = open.pop() {
+        let node = resolve.nodes.iter().find(|node| node.id == *id).ok_or(ThirdPartyError::NoRoot)?;
+        let normal = node
+            .deps
+            .iter()
+            .filter(|dependency| dependency.dep_kinds.iter().any(|kind| kind.kind == DependencyKind::Normal));
+        open.extend(normal.map(|dependency| &dependency.pkg).filter(|id| is_linked(id) && found.insert(*id)));
+    }
+    let mut packages: Vec<&Package> = found.into_iter().map(|id| &metadata[id]).collect();
+    packages.sort_by(|a, b| (&a.name, &a.version).cmp(&(&b.name, &b.version)));
+    Ok(packages)
+}
+
+/// What the list says of a package, with the first accepted licence that its own allows.
+fn row(package: &Package) -> Result<Crate<'_>, ThirdPartyError> {
+    let declared = package.license.as_deref().unwrap_or_default();
+    let allows = |license: &str| {
+        let wanted = spdx::license_id(license);
+        let is_it = |requirement: &spdx::LicenseReq| requirement.license.id() == wanted;
+        Expression::parse(declared).is_ok_and(|expression| expression.evaluate(is_it))
+    };
+    let (license, _) = ACCEPTED.into_iter().find(|(license, _)| allows(license)).ok_or_else(|| {
+        ThirdPartyError::License {
+            name: package.name.to_string(),
+            version: package.version.to_string(),
+            declared: declared.to_owned(),
+        }
+    })?;
+    let repository = package.repository.as_deref().unwrap_or_default();
+    Ok(Crate { name: &package.name, version: package.version.to_string(), declared, license, repository })
+}
+
+/// The text of one of the accepted licences as the package carries it.
+fn text(package: &Package, license: &'static str) -> Result<String, ThirdPartyError> {
+    let directory = package.manifest_path.as_std_path().parent().unwrap_or(Path::new(""));
+    let (_, names) = ACCEPTED.into_iter().find(|(known, _)| *known == license).unwrap_or_default();
+    let found = names.iter().find_map(|name| fs::read_to_string(directory.join(name)).ok());
+    found.map(|text| normalised(&text)).ok_or_else(|| ThirdPartyError::NoText {
+        name: package.name.to_string(),
+        version: package.version.to_string(),
+        license,
+        expected: names,
+        directory: directory.to_owned(),
+    })
+}
+
+/// The text without what editors leave at the ends of lines and of the file.
+fn normalised(text: &str) -> String {
+    let lines: Vec<&str> = text.lines().map(str::trim_end).collect();
+    lines.join("\n").trim_matches('\n').to_owned()
+}
+
+/// The list and, for each text, the crates under it.
+fn document(rows: &[Crate<'_>], texts: &BTreeMap<String, Vec<String>>) -> String {
+    let mut document = String::from(
+        "\
+Third-party software in the shared library
+==========================================
+
+The shared library is linked with the following Rust crates. Where a crate
+offers a choice of licences (in brackets), it is used under the one in front.
+The texts stand below, as the crates carry them.
+
+",
+    );
+    let width = rows.iter().map(|row| row.title().len()).max().unwrap_or_default();
+    for row in rows {
+        let choice = if row.declared == row.license { String::new() } else { format!(" ({})", row.declared) };
+        document += &format!("{:<width$}  {}{choice}\n", row.title(), row.license);
+        document += &format!("{:<width$}  {}\n", "", row.repository);
+    }
+    let mut texts: Vec<(&String, &Vec<String>)> = texts.iter().collect();
+    texts.sort_by_key(|(_, crates)| crates.first().map(|title| title.to_lowercase()));
+    for (text, crates) in texts {
+        let title = crates.join(", ");
+        document += &format!("\n\n{title}\n{}\n\n{text}\n", "-".repeat(title.len()));
+    }
+    document
+}

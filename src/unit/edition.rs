@@ -1,0 +1,65 @@
+//! How much of a unit a package shows.
+
+use super::Description;
+use super::description::Token;
+use super::sampled::ClockVariable;
+
+/// What a package shows of a unit. All editions are served by the same library and compute the same; the instantiation
+/// token tells which one an importer has read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Edition {
+    /// Without the clocks of a sampled unit, and thus without what needs them: the importer steps, the unit ticks.
+    /// Many importers misread a description with clocks, even if they use none of them.
+    Plain,
+    /// With clocks: the importer may handle ticks as events or schedule them. Of sampled units only.
+    Clocked,
+}
+
+impl Edition {
+    pub const ALL: [Self; 2] = [Self::Plain, Self::Clocked];
+
+    /// Whether the unit comes in this edition.
+    pub fn suits(self, description: &Description) -> bool {
+        match self {
+            Self::Plain => true,
+            Self::Clocked => description.is_sampled(),
+        }
+    }
+
+    /// Clocks that the edition shows, with their value references.
+    pub fn clocks(
+        self,
+        description: &Description,
+    ) -> impl Iterator<Item = (usize, &'static ClockVariable)> + use<> {
+        let shown = match self {
+            Self::Plain => 0,
+            Self::Clocked => usize::MAX,
+        };
+        description.clocks().take(shown)
+    }
+
+    /// Instantiation token of the unit in this edition; that of the plain one is the unit's own.
+    pub fn token(self, description: &Description) -> Token {
+        description.token_with(self.clocks(description).map(|(_, clock)| clock.name))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::UNITS;
+    use super::*;
+
+    #[test]
+    fn every_unit_is_plain_and_sampled_ones_are_clocked_too() {
+        for unit in UNITS {
+            let description = unit.description;
+            let editions = Edition::ALL.map(|edition| edition.suits(description));
+            assert_eq!(editions, [true, description.is_sampled()], "{}", description.name);
+            assert_eq!(Edition::Plain.clocks(description).count(), 0);
+            assert_eq!(Edition::Clocked.clocks(description).count(), description.clocks().count());
+            assert_eq!(Edition::Plain.token(description), description.token());
+            let is_own = Edition::Clocked.token(description) != description.token();
+            assert_eq!(is_own, description.is_sampled(), "{}", description.name);
+        }
+    }
+}

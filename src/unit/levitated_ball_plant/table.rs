@@ -1,0 +1,175 @@
+//! Variables and description of the levitated ball.
+
+use crate::unit::Description;
+use crate::unit::levitated_ball::{
+    ACCELERATION, CURRENT, FLUX, FORCE, LABORATORY_FLUX, POSITION, VELOCITY, VOLTAGE, gap, gravity,
+    inductance_constant, mass, resistance,
+};
+use crate::unit::sensor::sample_time;
+use crate::unit::variable::{Dependency, Kind, Variability, Variable, variable_table};
+
+variable_table! {
+    TIME = Variable::time();
+    VOLTAGE_INPUT = Variable::input("voltage", &VOLTAGE)
+        .describe("u, coil voltage, held over a step unless its derivative is set");
+    FORCE_INPUT = Variable::input("force", &FORCE)
+        .range(-1e6, 1e6)
+        .describe("Disturbing force on the ball, positive upwards, held over a step unless its derivative is set");
+    CURRENT_OUTPUT = Variable::output("current", &CURRENT)
+        .initially_from(&["initial.position", "initial.flux", "inductance_constant", "gap", "lower_stop"])
+        .depends_on(&[
+            Dependency::dependent("position"),
+            Dependency::dependent("flux"),
+            Dependency::dependent("inductance_constant"),
+            Dependency::dependent("gap"),
+        ])
+        .describe("i = (c - y) lam / k, coil current");
+    POSITION_OUTPUT = Variable::output("position", &POSITION)
+        .initially_from(&["initial.position", "gap", "lower_stop"])
+        .depends_on(&[Dependency::constant("position")])
+        .reinitialised()
+        .describe("y, position of the ball, positive upwards, the magnet's face at gap");
+    VELOCITY_OUTPUT = Variable::output("velocity", &VELOCITY)
+        .initially_from(&["initial.velocity", "initial.position", "gap", "lower_stop"])
+        .depends_on(&[Dependency::constant("velocity")])
+        .reinitialised()
+        .describe("p / m, velocity of the ball, positive upwards");
+    FLUX_OUTPUT = Variable::output("flux", &FLUX)
+        .initially_from(&["initial.flux"])
+        .depends_on(&[Dependency::constant("flux")])
+        .describe("lam, flux linkage of the coil");
+    VOLTAGE_MEASURED = Variable::output("voltage_measured", &VOLTAGE)
+        .initially_from(&["voltage"])
+        .depends_on(&[Dependency::dependent("voltage")])
+        .describe("Mean voltage that acted over the last step, in model exchange the one that acts; wire it to the \
+            controller's voltage_applied");
+    CURRENT_MEASURED = Variable::output("current_measured", &CURRENT)
+        .initially_from(&[
+            "initial.position", "initial.flux", "inductance_constant", "gap", "lower_stop", "sensor.noise",
+            "sensor.resolution", "sensor.sample_time", "sensor.seed",
+        ])
+        .depends_on(&[
+            Dependency::dependent("position"),
+            Dependency::dependent("flux"),
+            Dependency::dependent("inductance_constant"),
+            Dependency::dependent("gap"),
+        ])
+        .describe("Current with sensor noise and resolution, one reading per step or per sensor.sample_time; without the \
+            latter in model exchange the current itself");
+    CONTACT = Variable::held_output("contact", Kind::Boolean)
+        .initially_from(&[
+            "initial.position", "initial.velocity", "initial.flux", "mass", "inductance_constant", "gravity", "gap",
+            "lower_stop",
+        ])
+        .describe("Whether the ball rests on the magnet or on the lower stop");
+    POSITION_DERIVATIVE = Variable::local("der(position)", Kind::Real(&VELOCITY), Variability::Continuous)
+        .initially_from(&["initial.velocity", "initial.position", "gap", "lower_stop"])
+        .derivative_of("position")
+        .depends_on(&[Dependency::discrete("velocity")])
+        .describe("y', 0 in contact");
+    ACCELERATION_LOCAL = Variable::local("acceleration", Kind::Real(&ACCELERATION), Variability::Continuous)
+        .initially_from(&[
+            "force", "initial.position", "initial.velocity", "initial.flux", "mass", "inductance_constant", "gravity", "gap", "lower_stop",
+        ])
+        .derivative_of("velocity")
+        .depends_on(&[
+            Dependency::dependent("flux"),
+            Dependency::discrete("force"),
+            Dependency::dependent("mass"),
+            Dependency::dependent("inductance_constant"),
+            Dependency::discrete("gravity"),
+        ])
+        .describe("p' / m under the present force; 0 in contact");
+    FLUX_DERIVATIVE = Variable::local("der(flux)", Kind::Real(&VOLTAGE), Variability::Continuous)
+        .initially_from(&[
+            "voltage", "initial.position", "initial.flux", "resistance", "inductance_constant", "gap", "lower_stop",
+        ])
+        .derivative_of("flux")
+        .depends_on(&[
+            Dependency::constant("voltage"),
+            Dependency::dependent("position"),
+            Dependency::dependent("flux"),
+            Dependency::dependent("resistance"),
+            Dependency::dependent("inductance_constant"),
+            Dependency::dependent("gap"),
+        ])
+        .describe("lam' = u - R i");
+    LOWER_STOP_INDICATOR = Variable::event_indicator("event_indicator.lower_stop")
+        .depends_on(&[
+            Dependency::dependent("position"),
+            Dependency::dependent("flux"),
+            Dependency::dependent("force"),
+            Dependency::dependent("mass"),
+            Dependency::dependent("inductance_constant"),
+            Dependency::dependent("gravity"),
+            Dependency::dependent("gap"),
+            Dependency::dependent("lower_stop"),
+        ])
+        .describe("Distance to the lower stop as a share of the free way; resting there, what presses the ball on, in g");
+    MAGNET_INDICATOR = Variable::event_indicator("event_indicator.magnet")
+        .depends_on(&[
+            Dependency::dependent("position"),
+            Dependency::dependent("flux"),
+            Dependency::dependent("force"),
+            Dependency::dependent("mass"),
+            Dependency::dependent("inductance_constant"),
+            Dependency::dependent("gravity"),
+            Dependency::dependent("gap"),
+            Dependency::dependent("lower_stop"),
+        ])
+        .describe("Distance to the magnet as a share of the free way; resting there, what presses the ball on, in g");
+    MAGNETIC_FORCE = Variable::local("magnetic_force", Kind::Real(&FORCE), Variability::Continuous)
+        .initially_from(&["initial.flux", "inductance_constant"])
+        .describe("lam^2 / (2 k), force of the magnet on the ball");
+    MASS = mass();
+    RESISTANCE = resistance();
+    INDUCTANCE_CONSTANT = inductance_constant();
+    GAP = gap();
+    GRAVITY = gravity();
+    LOWER_STOP = Variable::parameter("lower_stop", Kind::Real(&POSITION), -0.02)
+        .range(-10.0, 0.0)
+        .describe("Position below which the ball cannot fall; assumed");
+    INITIAL_POSITION = Variable::parameter("initial.position", Kind::Real(&POSITION), 0.0)
+        .range(-10.0, 1.0)
+        .describe("y at the start; beyond a stop it becomes the stop's");
+    INITIAL_VELOCITY = Variable::parameter("initial.velocity", Kind::Real(&VELOCITY), 0.0)
+        .range(-1e3, 1e3)
+        .describe("p / m at the start");
+    INITIAL_FLUX = Variable::parameter("initial.flux", Kind::Real(&FLUX), LABORATORY_FLUX)
+        .range(-10.0, 10.0)
+        .describe("lam at the start; the start value sqrt(2 k m g) carries the ball of the other start values");
+    SENSOR_NOISE = Variable::tunable("sensor.noise", Kind::Real(&CURRENT), 0.0)
+        .range(0.0, 1e3)
+        .describe("Standard deviation of the current sensor's white noise, per reading");
+    SENSOR_RESOLUTION = Variable::tunable("sensor.resolution", Kind::Real(&CURRENT), 0.0)
+        .range(0.0, 1e3)
+        .describe("Step of the current sensor's output, 0 for none");
+    SENSOR_SAMPLE_TIME = sample_time();
+    SENSOR_SEED = Variable::parameter("sensor.seed", Kind::Integer, 1.0)
+        .range(0.0, i32::MAX as f64)
+        .describe("Seed of the sensor's noise; the same seed gives the same run on every platform");
+}
+
+pub static DESCRIPTION: Description = Description {
+    name: "LevitatedBallPlant",
+    summary: "Steel ball levitated by an electromagnet, one degree of freedom, voltage driven",
+    documentation: &[
+        "Steel ball below an electromagnet, equation (1) of Sensorless Control of the Levitated Ball, arXiv 1811.07732: \
+         lam' = u - R i, y' = p / m, p' = lam^2 / (2 k) - m g + force, i = (c - y) lam / k. The available text of the \
+         paper has lost its formulas and numbers: the equations are those of the book it refers to (Ortega, Loria, \
+         Nicklasson, Sira-Ramirez 2013, chapter 8), all parameters are assumed.",
+        "Voltage and force are held over a communication step, which is solved by a Runge-Kutta method of order 5 in \
+         steps of at most 0.1 ms, less where the coil is faster; the result hardly depends on the communication step. \
+         The ball moves between the magnet's face at gap and lower_stop. An impact is inelastic; times of impact and \
+         release are found to the last digit.",
+        "For model exchange the states are position, velocity and flux; impacts and releases are state events, at which \
+         position and velocity may jump, and readings of the sensor are time events if sensor.sample_time is not 0; \
+         without it current_measured is the current itself there. voltage_measured is the voltage that acts, contact \
+         changes at events only. In co-simulation voltage and force may have a slope (input derivative of order 1, \
+         FMI 2.0).",
+        "Not in the paper: the disturbing force, the stops and the sensor model.",
+    ],
+    variables: &VARIABLES,
+    step_size: 1e-4,
+    stop_time: 5.0,
+};

@@ -1,0 +1,202 @@
+//! Variables and description of the maglev rig.
+
+use crate::plant::maglev_rig::MaglevRig;
+use crate::unit::Description;
+use crate::unit::maglev_rig::{
+    BALL_ACCELERATION, BALL_DISTANCE, BALL_VELOCITY, DRIVER_GAIN, DRIVER_VOLTAGE, ELECTROMAGNETIC_CONSTANT,
+    OPERATING_VOLTAGE, RIG_CURRENT, RIG_FORCE, RIG_GRAVITY, RIG_MASS, SENSOR_NOISE as SENSOR_NOISE_QUANTITY,
+    SENSOR_VOLTAGE as SENSOR_VOLTAGE_QUANTITY, sensor_gain, sensor_offset, voltage_max, voltage_min,
+};
+use crate::unit::sensor::sample_time;
+use crate::unit::variable::{Dependency, Kind, Variability, Variable, variable_table};
+
+/// What the free ball's acceleration follows from.
+const FORCES: &[Dependency] = &[
+    Dependency::dependent("position"),
+    Dependency::dependent("voltage"),
+    Dependency::discrete("force"),
+    Dependency::dependent("mass"),
+    Dependency::discrete("gravity"),
+    Dependency::dependent("electromagnetic_constant"),
+    Dependency::dependent("driver_gain"),
+    Dependency::dependent("voltage_min"),
+    Dependency::dependent("voltage_max"),
+    Dependency::dependent("upper_stop"),
+];
+
+/// What the distance to a stop and what presses the ball on follow from.
+const CONTACT_FORCES: &[Dependency] = &[
+    Dependency::dependent("position"),
+    Dependency::dependent("voltage"),
+    Dependency::dependent("force"),
+    Dependency::dependent("mass"),
+    Dependency::dependent("gravity"),
+    Dependency::dependent("electromagnetic_constant"),
+    Dependency::dependent("driver_gain"),
+    Dependency::dependent("voltage_min"),
+    Dependency::dependent("voltage_max"),
+    Dependency::dependent("upper_stop"),
+    Dependency::dependent("lower_stop"),
+];
+
+variable_table! {
+    TIME = Variable::time();
+    VOLTAGE_INPUT = Variable::input("voltage", &DRIVER_VOLTAGE)
+        .start(OPERATING_VOLTAGE)
+        .describe("u, voltage at the coil's driver, held over a step unless its derivative is set, and limited by it");
+    FORCE = Variable::input("force", &RIG_FORCE)
+        .range(-1e3, 1e3)
+        .describe("Disturbing force on the ball, positive downwards, held over a step unless its derivative is set");
+    POSITION = Variable::output("position", &BALL_DISTANCE)
+        .initially_from(&["initial.position", "upper_stop", "lower_stop"])
+        .depends_on(&[Dependency::constant("position")])
+        .reinitialised()
+        .describe("x, distance from coil to ball, positive downwards");
+    VELOCITY = Variable::output("velocity", &BALL_VELOCITY)
+        .initially_from(&["initial.velocity", "initial.position", "upper_stop", "lower_stop"])
+        .depends_on(&[Dependency::constant("velocity")])
+        .reinitialised()
+        .describe("x', velocity of the ball, positive downwards");
+    CURRENT = Variable::output("current", &RIG_CURRENT)
+        .initially_from(&["voltage", "driver_gain", "voltage_min", "voltage_max"])
+        .depends_on(&[
+            Dependency::dependent("voltage"),
+            Dependency::dependent("driver_gain"),
+            Dependency::dependent("voltage_min"),
+            Dependency::dependent("voltage_max"),
+        ])
+        .describe("i = k1 u, coil current under voltage_measured: the mean over the last step, in model exchange the \
+            one that flows");
+    SENSOR_VOLTAGE = Variable::output("sensor_voltage", &SENSOR_VOLTAGE_QUANTITY)
+        .initially_from(&["initial.position", "upper_stop", "lower_stop", "sensor_gain", "sensor_offset"])
+        .depends_on(&[
+            Dependency::fixed("position"),
+            Dependency::dependent("sensor_gain"),
+            Dependency::constant("sensor_offset"),
+        ])
+        .describe("k2 x + eta, true sensor voltage");
+    SENSOR_VOLTAGE_MEASURED = Variable::output("sensor_voltage_measured", &SENSOR_VOLTAGE_QUANTITY)
+        .initially_from(&[
+            "initial.position", "upper_stop", "lower_stop", "sensor_gain", "sensor_offset", "sensor.noise",
+            "sensor.resolution", "sensor.sample_time", "sensor.seed", "sensor.minimum", "sensor.maximum",
+        ])
+        .depends_on(&[
+            Dependency::dependent("position"),
+            Dependency::dependent("sensor_gain"),
+            Dependency::dependent("sensor_offset"),
+            Dependency::dependent("sensor.minimum"),
+            Dependency::dependent("sensor.maximum"),
+        ])
+        .describe("Sensor voltage with noise, resolution and range, one reading per step or per sensor.sample_time; without \
+            the latter in model exchange the sensor voltage within the range");
+    VOLTAGE_MEASURED = Variable::output("voltage_measured", &DRIVER_VOLTAGE)
+        .initially_from(&["voltage", "voltage_min", "voltage_max"])
+        .depends_on(&[
+            Dependency::dependent("voltage"),
+            Dependency::dependent("voltage_min"),
+            Dependency::dependent("voltage_max"),
+        ])
+        .describe("Mean voltage that acted over the last step, within the driver's limits, in model exchange the one \
+            that acts; wire it to the controller's voltage_applied");
+    CONTACT = Variable::held_output("contact", Kind::Boolean)
+        .initially_from(&["initial.position", "initial.velocity", "gravity", "upper_stop", "lower_stop"])
+        .describe("Whether the ball rests on a stop");
+    POSITION_DERIVATIVE = Variable::local("der(position)", Kind::Real(&BALL_VELOCITY), Variability::Continuous)
+        .initially_from(&["initial.velocity", "initial.position", "upper_stop", "lower_stop"])
+        .derivative_of("position")
+        .depends_on(&[Dependency::discrete("velocity")])
+        .describe("x', 0 at rest on a stop");
+    ACCELERATION = Variable::local("acceleration", Kind::Real(&BALL_ACCELERATION), Variability::Continuous)
+        .initially_from(&[
+            "voltage", "force", "initial.position", "initial.velocity", "mass", "gravity", "electromagnetic_constant", "driver_gain",
+            "voltage_min", "voltage_max", "upper_stop", "lower_stop",
+        ])
+        .derivative_of("velocity")
+        .depends_on(FORCES)
+        .describe("x'' under the present voltage and force; 0 at rest on a stop");
+    UPPER_STOP_INDICATOR = Variable::event_indicator("event_indicator.upper_stop")
+        .depends_on(CONTACT_FORCES)
+        .describe("Distance to the upper stop as a share of the free way; resting there, what presses the ball on, in g");
+    LOWER_STOP_INDICATOR = Variable::event_indicator("event_indicator.lower_stop")
+        .depends_on(CONTACT_FORCES)
+        .describe("Distance to the lower stop as a share of the free way; resting there, what presses the ball on, in g");
+    MAGNETIC_FORCE = Variable::local("magnetic_force", Kind::Real(&RIG_FORCE), Variability::Continuous)
+        .describe("K i^2 / x^2 under the present voltage, upwards");
+    MASS = Variable::parameter("mass", Kind::Real(&RIG_MASS), MaglevRig::PRINTED.mass)
+        .range(1e-6, 1e3)
+        .describe("m, printed in Table 1");
+    GRAVITY = Variable::parameter("gravity", Kind::Real(&RIG_GRAVITY), MaglevRig::PRINTED.gravity)
+        .range(-100.0, 100.0)
+        .describe("g, printed in Table 1");
+    FORCE_CONSTANT = Variable::parameter(
+        "electromagnetic_constant",
+        Kind::Real(&ELECTROMAGNETIC_CONSTANT),
+        MaglevRig::PRINTED.electromagnetic_constant,
+    )
+        .range(0.0, 1.0)
+        .describe("K, printed in Table 1 without a unit");
+    DRIVER_GAIN_PARAMETER = Variable::parameter(
+        "driver_gain",
+        Kind::Real(&DRIVER_GAIN),
+        MaglevRig::PRINTED.driver_gain,
+    )
+        .range(0.0, 100.0)
+        .describe("k1, current per voltage of the driver with its inner loop, printed in Table 1");
+    SENSOR_GAIN = sensor_gain();
+    SENSOR_OFFSET = sensor_offset();
+    VOLTAGE_MIN = voltage_min("voltage_min");
+    VOLTAGE_MAX = voltage_max("voltage_max");
+    UPPER_STOP = Variable::parameter("upper_stop", Kind::Real(&BALL_DISTANCE), 1e-3)
+        .range(1e-4, 8e-3)
+        .describe("Position at which the ball touches the coil; assumed, x = 0 is a pole of the force");
+    LOWER_STOP = Variable::parameter("lower_stop", Kind::Real(&BALL_DISTANCE), 25e-3)
+        .range(9e-3, 10.0)
+        .describe("Position at which the ball lies; assumed, within the sensor's range");
+    INITIAL_POSITION = Variable::parameter("initial.position", Kind::Real(&BALL_DISTANCE), 9e-3)
+        .range(0.0, 10.0)
+        .describe("x at the start, the rig manual's operating point; beyond a stop it becomes the stop's");
+    INITIAL_VELOCITY = Variable::parameter("initial.velocity", Kind::Real(&BALL_VELOCITY), 0.0)
+        .range(-1e3, 1e3)
+        .describe("x' at the start");
+    SENSOR_NOISE = Variable::tunable("sensor.noise", Kind::Real(&SENSOR_NOISE_QUANTITY), 0.0)
+        .range(0.0, 1e3)
+        .describe("Standard deviation of the sensor's white noise, per reading");
+    SENSOR_RESOLUTION = Variable::tunable("sensor.resolution", Kind::Real(&SENSOR_NOISE_QUANTITY), 0.0)
+        .range(0.0, 1e3)
+        .describe("Step of the sensor's output, 0 for none");
+    SENSOR_MINIMUM = Variable::tunable("sensor.minimum", Kind::Real(&SENSOR_VOLTAGE_QUANTITY), -3.75)
+        .range(-1e3, 0.0)
+        .describe("Smallest sensor voltage; -3.75 V in the rig's manual, which no ball can reach");
+    SENSOR_MAXIMUM = Variable::tunable("sensor.maximum", Kind::Real(&SENSOR_VOLTAGE_QUANTITY), 1.25)
+        .range(0.0, 1e3)
+        .describe("Largest sensor voltage; 1.25 V in the rig's manual, 28 mm");
+    SENSOR_SAMPLE_TIME = sample_time();
+    SENSOR_SEED = Variable::parameter("sensor.seed", Kind::Integer, 1.0)
+        .range(0.0, i32::MAX as f64)
+        .describe("Seed of the sensor's noise; the same seed gives the same run on every platform");
+}
+
+pub static DESCRIPTION: Description = Description {
+    name: "MaglevRigPlant",
+    summary: "Maglev rig Feedback 33-942S: a ball below a coil with its current driver and position sensor",
+    documentation: &[
+        "Steel ball below an electromagnet: A. J. Humaidi et al., Experimental Design and Verification of Extended State \
+         Observers for Magnetic Levitation System Based on PSO, Open Electr. Electron. Eng. J. 12, 110-120, 2018, \
+         equations (3) to (7): x'' = g - K i^2 / (m x^2) + force / m with i = k1 u. The paper's equations are pictures; \
+         they are filled in so that its words and Table 1 fit.",
+        "Voltage and force are held over a communication step, which is solved by a Runge-Kutta method of order 5 in \
+         steps of at most 50 us; times of impact and release are found to the last digit. The result does not depend on \
+         the communication step but for rounding and, close to the coil at full voltage, parts in a million.",
+        "For model exchange the states are position and velocity; impacts and releases are state events, at which both \
+         may jump, and readings of the sensor are time events if sensor.sample_time is not 0; without it \
+         sensor_voltage_measured is the sensor voltage within its range there. voltage_measured and current are those that \
+         act, contact changes at events only. In co-simulation voltage and force may have a slope (input derivative of \
+         order 1, FMI 2.0).",
+        "Printed: m, g, K, k1. From the rig's manual, by way of a public virtual laboratory: sensor gain, offset and \
+         range, operating point 9 mm, limits of the voltage (their negative half is left out: the force goes with the \
+         square, so that negative voltages attract, too). Assumed: the stops. Not modelled: the driver's current loop.",
+    ],
+    variables: &VARIABLES,
+    step_size: 1e-3,
+    stop_time: 10.0,
+};

@@ -1,0 +1,191 @@
+//! Plain and clocked editions of the sampled units: the token selects what an importer may do and sees, and nothing else.
+
+use core::ptr::{null, null_mut};
+
+use maglev_fmu::fmi::fmi3::*;
+use maglev_fmu::unit::Edition;
+
+use super::harness::clocked::{Choices, co_simulation_of, sampled_units};
+use super::harness::{Component, ERROR, OK, Phase, Recorder, Standard, fmi3_logger, token};
+
+const EVENTS: Choices = Choices { event_mode: true, early_return: true, intermediate_update: None };
+
+/// The one message about an instance that was not made.
+fn refusal(recorder: &Recorder, handle: *mut core::ffi::c_void) -> String {
+    assert!(handle.is_null());
+    let messages = recorder.take();
+    assert_eq!(messages.len(), 1, "{messages:?}");
+    messages[0].text.clone()
+}
+
+fn schedule(edition: Edition, unit: &str, recorder: &Recorder) -> *mut core::ffi::c_void {
+    let (name, token, log) = (c"x".as_ptr(), token(unit, edition), Some(fmi3_logger as _));
+    let environment = recorder.environment();
+    // SAFETY: C strings, a living recorder, no other callbacks.
+    unsafe {
+        fmi3InstantiateScheduledExecution(
+            name,
+            token.as_ptr(),
+            null(),
+            0,
+            0,
+            environment,
+            log,
+            None,
+            None,
+            None,
+        )
+    }
+}
+
+#[test]
+fn what_needs_clocks_is_refused_with_the_package_that_has_it() {
+    for unit in sampled_units() {
+        let recorder = Recorder::default();
+        for (edition, is_offered) in [(Edition::Plain, false), (Edition::Clocked, true)] {
+            let made = [
+                co_simulation_of(edition, unit, EVENTS, recorder.environment()),
+                schedule(edition, unit, &recorder),
+            ];
+            let asked = ["co-simulation with event mode", "scheduled execution"];
+            for (handle, asked) in made.into_iter().zip(asked) {
+                if is_offered {
+                    assert!(!handle.is_null(), "{unit}: {:?}", recorder.messages());
+                    drop(Component::from_handle(Standard::Fmi3, unit, handle, Box::default()));
+                } else {
+                    assert!(handle.is_null(), "{unit}: {asked}");
+                }
+            }
+            if is_offered {
+                continue;
+            }
+            recorder.clear();
+            let said = |asked| {
+                format!(
+                    "{unit} does not offer {asked}, only co-simulation; its package fmi3-clocked/{unit}.fmu does"
+                )
+            };
+            let text = refusal(&recorder, co_simulation_of(edition, unit, EVENTS, recorder.environment()));
+            assert!(text.ends_with(&said(asked[0])), "{text}");
+            let text = refusal(&recorder, schedule(edition, unit, &recorder));
+            assert!(text.ends_with(&said(asked[1])), "{text}");
+        }
+    }
+}
+
+#[test]
+fn no_package_is_named_where_none_offers_what_is_asked_for() {
+    let recorder = Recorder::default();
+    let handle = schedule(Edition::Plain, super::harness::PLANT, &recorder);
+    let text = refusal(&recorder, handle);
+    assert!(
+        text.ends_with("does not offer scheduled execution, only co-simulation, model exchange"),
+        "{text}"
+    );
+}
+
+#[test]
+fn clocks_exist_in_the_clocked_edition_only() {
+    for unit in sampled_units() {
+        for (edition, exist) in [(Edition::Plain, false), (Edition::Clocked, true)] {
+            let component = Component::co_simulation_of(edition, unit, Choices::default());
+            assert_eq!(component.enter_initialization(0.0, None), OK);
+            component.recorder.clear();
+            let [tick, ticked] = component.clocks();
+            let count = component.description.variables.len();
+            let unknown = |clock| format!("value reference {clock} is unknown: expected 0 to {}", count - 1);
+            let (mut value, mut real, mut qualifier, mut counts) = (0, 0.0, 0, (0, 0));
+            // SAFETY: a live handle, one reference and room for one value each.
+            let of_tick = unsafe {
+                [
+                    fmi3GetClock(component.handle, &tick, 1, &mut value),
+                    fmi3GetIntervalDecimal(component.handle, &tick, 1, &mut real, &mut qualifier),
+                    fmi3GetIntervalFraction(
+                        component.handle,
+                        &tick,
+                        1,
+                        &mut counts.0,
+                        &mut counts.1,
+                        &mut qualifier,
+                    ),
+                    fmi3GetShiftDecimal(component.handle, &tick, 1, &mut real),
+                    fmi3GetShiftFraction(component.handle, &tick, 1, &mut counts.0, &mut counts.1),
+                ]
+            };
+            let statuses = of_tick.into_iter().chain([component.get_clock(ticked).0]);
+            let expected = if exist { OK } else { ERROR };
+            assert!(statuses.clone().all(|status| status == expected), "{unit}, {edition:?}");
+            if !exist {
+                let messages = component.recorder.take();
+                assert_eq!(messages.len(), statuses.count());
+                for (message, clock) in messages.iter().zip([tick, tick, tick, tick, tick, ticked]) {
+                    assert!(message.text.contains(&unknown(clock)), "{}", message.text);
+                }
+            }
+            // No getter of another type takes a clock for a variable, and only who knows of clocks is told of one.
+            // SAFETY: a live handle, one reference, room for one value.
+            let status = unsafe { fmi3GetFloat64(component.handle, &tick, 1, &mut real, 1) };
+            let said = if exist { "is a clock".to_owned() } else { unknown(tick) };
+            component.recorder.messages().iter().for_each(|message| {
+                assert!(message.text.contains(&said), "{}", message.text);
+            });
+            assert_eq!((status, component.recorder.take().len()), (ERROR, 1));
+        }
+    }
+}
+
+/// Brings a clocked instance with events from communication point `from` to `to`, in steps of 1 ms, one tick each.
+fn step_with_events(component: &Component, from: u32, to: u32) {
+    for k in from..to {
+        let time = f64::from(k) * 1e-3;
+        if k > 0 {
+            assert_eq!(component.enter_event_mode(), OK);
+        }
+        component.settle_event();
+        assert_eq!(component.enter_step_mode(), OK);
+        let step = component.step_to_event(time, 1e-3);
+        assert_eq!((step.status, step.is_early), (OK, false), "{:?}", component.recorder.messages());
+    }
+}
+
+#[test]
+fn saved_states_cross_the_editions_where_the_phase_exists() {
+    // Not every sample time is 1 ms; the clock is the unit's own either way.
+    for unit in sampled_units().filter(|unit| super::harness::description(unit).step_size == 1e-3) {
+        let clocked = Component::co_simulation(unit, EVENTS);
+        clocked.initialise(0.0);
+        let in_event_mode = clocked.saved_bytes();
+        step_with_events(&clocked, 0, 20);
+        let bytes = clocked.saved_bytes();
+
+        let plain = Component::in_phase(Standard::Fmi3, unit, Phase::Step);
+        assert_eq!(plain.restore_bytes(&bytes), OK, "{:?}", plain.recorder.messages());
+        assert_eq!(plain.snapshot(), clocked.snapshot());
+        for k in 20..40 {
+            assert_eq!(plain.step(f64::from(k) * 1e-3, 1e-3), OK);
+        }
+        step_with_events(&clocked, 20, 40);
+        assert_eq!(plain.snapshot(), clocked.snapshot(), "{unit}: clocked to plain");
+
+        assert_eq!(clocked.restore_bytes(&plain.saved_bytes()), OK, "{:?}", clocked.recorder.messages());
+        step_with_events(&clocked, 40, 60);
+        for k in 40..60 {
+            assert_eq!(plain.step(f64::from(k) * 1e-3, 1e-3), OK);
+        }
+        assert_eq!(plain.snapshot(), clocked.snapshot(), "{unit}: plain to clocked");
+
+        // Event mode is a place where a plain instance never is.
+        plain.recorder.clear();
+        plain.assert_refused(plain.restore_bytes(&in_event_mode), &["event mode", "never reaches"]);
+    }
+}
+
+#[test]
+fn clocked_editions_of_units_without_clocks_do_not_exist() {
+    let recorder = Recorder::default();
+    let unit = super::harness::PLANT;
+    // The token is the plain one's, and so is what it selects.
+    assert_eq!(token(unit, Edition::Clocked), token(unit, Edition::Plain));
+    let handle = co_simulation_of(Edition::Clocked, unit, EVENTS, recorder.environment());
+    assert_eq!(handle, null_mut());
+}

@@ -1,0 +1,127 @@
+//! Steps that would compute for more than about a second are refused before they begin, with what would be accepted.
+
+use std::time::{Duration, Instant};
+
+use maglev_fmu::unit::UNITS;
+
+use super::harness::clocked::{Choices, sampled_units};
+use super::harness::{BOTH, Component, OK};
+
+/// The longest step that a refusal names.
+#[track_caller]
+fn named_limit(component: &Component, step: f64) -> f64 {
+    let said = ["a step of ", " s: expected at most ", "about a second of computing"];
+    component.assert_refused_keeping(component.step(0.0, step), &said)
+}
+
+impl Component {
+    /// Asserts a refusal that names a number of seconds after "at most", and that nothing has changed.
+    #[track_caller]
+    fn assert_refused_keeping(&self, status: i32, said: &[&str]) -> f64 {
+        let text = self.recorder.messages().last().map(|message| message.text.clone()).unwrap_or_default();
+        self.assert_refused(status, said);
+        assert_eq!(self.get("time"), 0.0);
+        let number = text.split("expected at most ").nth(1).and_then(|rest| rest.split(' ').next());
+        number.and_then(|number| number.parse().ok()).expect("a number of seconds")
+    }
+}
+
+/// Units with parameters, by name, that make their steps expensive.
+const EXPENSIVE: &[(&str, &[(&str, f64)])] = &[
+    (
+        "LevitatedBallPlant",
+        &[
+            ("resistance", 1e4),
+            ("inductance_constant", 1e-9),
+            ("gravity", 100.0),
+            ("lower_stop", 0.0),
+            ("initial.position", -10.0),
+            ("initial.velocity", 1000.0),
+        ],
+    ),
+    ("LevitatedBallPlant", &[]),
+    ("LevitatedBallPlant", &[("sensor.sample_time", 1e-6), ("sensor.noise", 1e-3)]),
+    ("MagneticBearingPlant", &[("sensor.sample_time", 1e-6), ("sensor.noise", 1e-3)]),
+    ("MaglevRigPlant", &[]),
+    ("MaglevRigPlant", &[("sensor.sample_time", 1e-6), ("sensor.noise", 1e-3)]),
+    ("LevitatedBallController", &[]),
+    ("LevitatedBallController", &[("sample_time", 1e-6)]),
+    ("LevitatedBallController", &[("observer.kind", 3.0), ("sample_time", 1.0)]),
+    ("MaglevRigController", &[]),
+    ("MaglevRigController", &[("observer.kind", 2.0), ("observer.discretisation", 1.0)]),
+    ("MaglevRigController", &[("observer.kind", 2.0), ("observer.substeps", 1000.0)]),
+    ("MagneticBearingController", &[]),
+    ("MagneticBearingController", &[("observer.max_iterations", 1000.0), ("observer.step_size", 1e-3)]),
+    ("MagneticBearingController", &[("observer.kind", 2.0), ("observer.max_iterations", 1000.0)]),
+    ("MagneticBearingController", &[("observer.kind", 4.0)]),
+    (
+        "MagneticBearingController",
+        &[
+            ("observer.window", 64.0),
+            ("observer.max_iterations", 1000.0),
+            ("observer.line_search", 1.0),
+            ("observer.step_size", 1e-3),
+        ],
+    ),
+];
+
+#[test]
+fn a_step_that_would_take_long_is_refused_at_once_with_what_is_accepted() {
+    for standard in BOTH {
+        for (unit, parameters) in EXPENSIVE {
+            let component = Component::new(standard, unit);
+            for (name, value) in *parameters {
+                assert_eq!(component.set(name, *value), OK, "{unit} {name}");
+            }
+            component.initialise(0.0);
+            component.recorder.clear();
+            let begin = Instant::now();
+            let limit = named_limit(&component, 1e12);
+            // The limit itself is not refused, what is beyond is.
+            assert_eq!(named_limit(&component, limit * 1.5), limit, "{unit}");
+            assert!(begin.elapsed() < Duration::from_millis(100), "{unit}: {:?}", begin.elapsed());
+            // A share of it, since the machine may do something else.
+            let begin = Instant::now();
+            assert_eq!(component.step(0.0, limit * 0.02), OK, "{unit}");
+            let whole = begin.elapsed().as_secs_f64() / 0.02;
+            component.recorder.clear();
+            println!("{unit} {parameters:?}: {whole:.2} s for {limit} s");
+            assert!(whole < 10.0, "{unit} {parameters:?}: {whole} s for {limit} s");
+        }
+    }
+}
+
+#[test]
+fn every_unit_has_a_bound_and_the_suggested_step_is_far_below() {
+    for unit in UNITS {
+        let description = unit.description;
+        let component = Component::new(BOTH[0], description.name);
+        component.initialise(0.0);
+        component.recorder.clear();
+        // The bearing is solved in closed form, whatever the step.
+        if description.name == "MagneticBearingPlant" {
+            assert_eq!(component.step(0.0, 1e12), OK);
+        } else {
+            let limit = named_limit(&component, 1e12);
+            assert!(limit > 1e4 * description.step_size, "{}: {limit} s", description.name);
+        }
+    }
+}
+
+#[test]
+fn a_step_that_ends_at_the_next_tick_may_be_as_long_as_it_likes() {
+    for unit in sampled_units() {
+        let choices = Choices { event_mode: true, early_return: true, intermediate_update: None };
+        let component = Component::co_simulation(unit, choices);
+        component.initialise(0.0);
+        assert_eq!(component.enter_step_mode(), OK);
+        let step = component.step_to_event(0.0, 1e12);
+        assert_eq!((step.status, step.reached), (OK, 0.0));
+        let choices = Choices { event_mode: true, early_return: false, intermediate_update: None };
+        let component = Component::co_simulation(unit, choices);
+        component.initialise(0.0);
+        assert_eq!(component.enter_step_mode(), OK);
+        assert_ne!(component.step_to_event(0.0, 1e12).status, OK);
+        assert_eq!(component.get("time"), 0.0);
+    }
+}
