@@ -20,6 +20,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from zipfile import ZipFile
 
+import standard_calls
 from importers import ANY, CO_SIMULATION, MODEL_EXCHANGE, SCHEDULED_EXECUTION, Task, checkers, in_cpp, systems
 from importers import with_fmpy, with_fmuloader
 from lxml import etree
@@ -174,6 +175,7 @@ def page(outcomes: dict[tuple[Task, Path], Outcome]) -> str:
         "",
         *sorted(limits_of(systems.TASKS, outcomes)),
         NOTES.format(enumerations=", ".join(f"{name} (`{error}`)" for name, error in systems.ENUMERATION_ERRORS.items())),
+        standard_calls.section(),
     ]
     return "\n".join(lines)
 

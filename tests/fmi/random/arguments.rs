@@ -127,7 +127,8 @@ pub fn judge(oracle: &Oracle, call: &Call, saved: &dyn Fn(usize) -> Option<Model
             wrong_if(!are_inputs || !are_finite || orders.iter().any(|order| *order != 1))
         }
         Call::GetSlopes { references, orders } => {
-            let is_output = |variable: &Variable| variable.causality == Causality::Output;
+            let is_output =
+                |variable: &Variable| variable.causality == Causality::Output && variable.kind == Kind::Real;
             let is_wrong = !all(description, references, is_output) || orders.iter().any(|order| *order != 1);
             if is_wrong { Wrong } else { Computed }
         }

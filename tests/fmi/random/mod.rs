@@ -23,10 +23,11 @@ mod session;
 mod tally;
 mod values;
 
+use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::standard::{Causality, Deviations, Kind, ModelDescription};
+use super::standard::{Causality, Deviations, Kind, ModelDescription, Table};
 use saved::Kept;
 use scenario::Scenario;
 use session::Session;
@@ -122,19 +123,44 @@ fn random_calls_agree_with_the_standards() {
     println!("{tally}");
     assert!(tally.calls() >= 200_000, "{}", tally.calls());
     assert_reaches_everything(&tally);
+    for scenario in Scenario::all() {
+        let rows = Table::of(scenario.description.standard).rows();
+        let missing = rows.iter().find(|row| !tally.functions.contains_key(row.function.as_str()));
+        assert!(missing.is_none(), "{} was not called", missing.unwrap().function);
+    }
 }
 
-/// Ten million calls, in minutes: `cargo test --release --test fmi -- --ignored --nocapture ten_million`.
+/// Ten million calls, in minutes: `cargo test --release --test fmi ten_million -- --ignored`. Writes the figures that
+/// docs/conformance.md tells.
 #[test]
 #[ignore = "takes minutes"]
 fn ten_million_random_calls_agree_with_the_standards() {
-    let sequences = 10_000_000_u64.div_ceil((Scenario::all().len() * LENGTH) as u64);
+    let scenarios = Scenario::all().len();
+    let sequences = 10_000_000_u64.div_ceil((scenarios * LENGTH) as u64);
     let tally = run(1 << 32, sequences);
     println!("{tally}");
     assert!(tally.calls() >= 10_000_000, "{}", tally.calls());
     assert_reaches_everything(&tally);
-    let unused: Vec<_> = Deviations::listed().ids().filter(|id| !tally.deviations.contains_key(id)).collect();
-    println!("not met: {unused:?}");
+    let unmet: Vec<_> = Deviations::listed().ids().filter(|id| !tally.deviations.contains_key(id)).collect();
+    assert!(unmet.is_empty(), "listed, but never met: {unmet:?}");
+    let figures = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fmi/random/figures.toml");
+    std::fs::write(figures, tally.figures(scenarios)).unwrap();
+}
+
+/// For scripts/check_memory.py: one thread, and nothing unusual about the host, which a memory checker only imitates.
+#[test]
+#[ignore = "for a memory checker"]
+fn a_hundred_thousand_random_calls_for_a_memory_checker() {
+    let scenarios = Scenario::all();
+    let sequences = 100_000_u64.div_ceil((scenarios.len() * LENGTH) as u64);
+    let mut tally = Tally::default();
+    for place in 0..scenarios.len() {
+        for seed in 0..sequences {
+            let outcome = Session::run(scenarios[place], (1 << 33) + seed, LENGTH, &[], None);
+            tally.add(outcome.unwrap_or_else(|what| panic!("{what}")).0);
+        }
+    }
+    println!("{} calls", tally.calls());
 }
 
 /// The sequence that the variable RANDOM_CALLS of the environment names.

@@ -154,7 +154,7 @@ impl Model {
                 };
             }
             "Terminate" => self.state = State::Terminated,
-            "Reset" => *self = Self { promised: self.promised, ..Self::new(initial_sample_time) },
+            "Reset" => *self = Self::new(initial_sample_time),
             "EnterEventMode" => {
                 self.state = State::Event;
                 self.last_event = self.time;

@@ -83,7 +83,7 @@ impl Session {
         outcome.map_err(|what| session.report(&what))?;
         session.tally.borrow_mut().last = session.present.take();
         let own = session.kept.borrow().iter().skip(foreign.len()).take(1).cloned().collect();
-        let tally = session.tally.take();
+        let tally = Tally { instances: 1, ..session.tally.take() };
         drop(session);
         match environment::held() - held {
             0 => Ok((tally, own)),

@@ -17,6 +17,7 @@ pub type Place = (&'static str, &'static str, u32);
 pub struct Tally {
     /// Calls that returned OK, Warning, Discard, Error.
     pub statuses: [u64; 4],
+    pub instances: u64,
     /// Calls within callbacks.
     pub nested: u64,
     pub functions: BTreeMap<&'static str, [u64; 2]>,
@@ -100,6 +101,7 @@ impl Tally {
         for (sum, more) in self.statuses.iter_mut().zip(other.statuses) {
             *sum += more;
         }
+        self.instances += other.instances;
         self.nested += other.nested;
         for (function, more) in other.functions {
             let sum = self.functions.entry(function).or_default();
@@ -117,6 +119,25 @@ impl Tally {
             self.longest = other.longest;
             self.longest_call = other.longest_call;
         }
+    }
+}
+
+impl Tally {
+    /// For docs/conformance.md, in TOML.
+    pub fn figures(&self, scenarios: usize) -> String {
+        let [ok, warning, discard, error] = self.statuses;
+        let head = format!(
+            "# Written by `cargo test --release --test fmi ten_million -- --ignored`.\ncalls = {}\nnested = {}\n\
+             instances = {}\nscenarios = {scenarios}\nok = {}\ndiscard = {discard}\nerror = {error}\n\
+             longest = {:.3}\n\n[deviations]\n",
+            self.calls(),
+            self.nested,
+            self.instances,
+            ok + warning,
+            self.longest.as_secs_f64(),
+        );
+        let met = self.deviations.iter().map(|(id, number)| format!("{id} = {number}\n"));
+        met.fold(head, |text, line| text + &line)
     }
 }
 

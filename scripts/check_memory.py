@@ -1,0 +1,51 @@
+#!/usr/bin/env python3
+"""Random calls under valgrind: invalid accesses and memory that is lost; writes what it found for docs/conformance.md.
+
+python scripts/check_memory.py
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+
+from standard_calls import MEMORY
+
+TEST = "random::a_hundred_thousand_random_calls_for_a_memory_checker"
+VALGRIND = ["valgrind", "--leak-check=full", "--show-leak-kinds=definite,possible", "--num-callers=30"]
+
+
+def test_program() -> str:
+    """Builds the tests of the C boundary; path of the program."""
+    command = ["cargo", "test", "--test", "fmi", "--no-run", "--message-format=json"]
+    built = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
+    messages = [json.loads(line) for line in built.splitlines() if line.startswith("{")]
+    (program,) = (m["executable"] for m in messages if m.get("executable") and m["target"]["name"] == "fmi")
+    return program
+
+
+def main() -> None:
+    command = [*VALGRIND, test_program(), "--ignored", "--exact", TEST, "--nocapture", "--test-threads=1"]
+    run = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    print(run.stdout)
+    calls = re.search(r"^(\d+) calls", run.stdout, re.MULTILINE)
+    errors = re.search(r"ERROR SUMMARY: ([\d,]+) errors", run.stdout)
+    if run.returncode != 0 or calls is None or errors is None:
+        sys.exit(f"the calls did not end well: {run.returncode}")
+    kinds = [r"definitely lost: ([\d,]+) bytes", r"possibly lost: ([\d,]+) bytes"]
+    found = [re.search(kind, run.stdout) for kind in kinds]
+    lost = sum(int(kind[1].replace(",", "")) for kind in found if kind)
+    number_of_errors = int(errors[1].replace(",", ""))
+    MEMORY.write_text(
+        "# Written by scripts/check_memory.py.\n"
+        f"calls = {calls[1]}\nerrors = {number_of_errors}\nlost = {lost}\n",
+        encoding="utf-8",
+    )
+    if number_of_errors or lost:
+        sys.exit(f"{number_of_errors} errors, {lost} bytes lost")
+
+
+if __name__ == "__main__":
+    main()
