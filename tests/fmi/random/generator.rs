@@ -209,7 +209,12 @@ impl Generator<'_> {
     }
 
     fn room(&mut self, count: usize) -> usize {
-        if self.dice.percent(2) { count + 1 - 2 * self.dice.below(2).min(count) } else { count }
+        // FMI 2.0 has one number for both.
+        if self.standard() == Standard::Fmi3 && self.dice.percent(2) {
+            count + 1 - 2 * self.dice.below(2).min(count)
+        } else {
+            count
+        }
     }
 
     fn get(&mut self) -> Call {

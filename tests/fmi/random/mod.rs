@@ -23,6 +23,7 @@ mod session;
 mod tally;
 mod values;
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -36,57 +37,72 @@ use tally::Tally;
 /// Calls on one instance.
 const LENGTH: usize = 100;
 
-/// `sequences` sequences of each scenario, from `seed` on; panics at the first that fails.
+/// Failures that are told apart, and how many of them are told.
+const TOLD: usize = 12;
+
+/// `sequences` sequences of each scenario, from `seed` on; panics with what failed, one sequence of each kind.
 fn run(seed: u64, sequences: u64) -> Tally {
     let scenarios = Scenario::all();
-    let (next, total) = (AtomicUsize::new(0), Mutex::new(Tally::default()));
+    let (next, total) = (AtomicUsize::new(0), Mutex::new((Tally::default(), BTreeMap::new())));
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     std::thread::scope(|scope| {
         for _ in 0..threads {
             scope.spawn(|| {
-                loop {
-                    let place = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(scenario) = scenarios.get(place) else { return };
-                    let mut own = Tally::default();
+                while let Some(scenario) = scenarios.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let place = scenarios.iter().position(|known| core::ptr::eq(known, scenario)).unwrap();
+                    let (mut own, mut failures) = (Tally::default(), BTreeMap::new());
                     for seed in seed..seed + sequences {
-                        own.add(sequence(&scenarios, place, seed, LENGTH));
+                        match sequence(&scenarios, place, seed, LENGTH) {
+                            Ok(tally) => own.add(tally),
+                            Err(failure) => {
+                                failures.entry(kind(&failure)).or_insert(failure);
+                            }
+                        }
                     }
                     println!("{}: {} calls", scenario.name(), own.calls());
-                    total.lock().unwrap().add(own);
+                    let mut total = total.lock().unwrap();
+                    total.0.add(own);
+                    total.1.append(&mut failures);
                 }
             });
         }
     });
-    total.into_inner().unwrap()
+    let (tally, failures) = total.into_inner().unwrap();
+    let told: Vec<_> = failures.values().take(TOLD).map(String::as_str).collect();
+    assert!(failures.is_empty(), "{} kinds of failures:\n\n{}", failures.len(), told.join("\n\n"));
+    tally
+}
+
+/// A failure without its numbers.
+fn kind(failure: &str) -> String {
+    failure.chars().take(160).filter(|character| !character.is_ascii_digit()).collect()
 }
 
 /// One sequence; deterministic, so that it knows bytes of states of other instances from sequences of its own. Some are
 /// repeated under hosts that trap floating-point exceptions, round otherwise or flush small numbers: the same calls with
 /// the same bits at their end.
-fn sequence(scenarios: &[Scenario], place: usize, seed: u64, length: usize) -> Tally {
-    let replay = format!("RANDOM_CALLS=\"{place} {seed} {length}\"");
-    let foreign = if seed % 4 == 0 { foreign(scenarios, place, seed) } else { Vec::new() };
-    let run = |mood| {
-        let outcome = Session::run(scenarios[place], seed, length, &foreign, mood);
-        outcome.unwrap_or_else(|what| panic!("{what}\n{replay}")).0
-    };
-    let mut tally = run(None);
+fn sequence(scenarios: &[Scenario], place: usize, seed: u64, length: usize) -> Result<Tally, String> {
+    let told = |what| format!("{what}\nRANDOM_CALLS=\"{place} {seed} {length}\"");
+    let foreign = if seed % 4 == 0 { foreign(scenarios, place, seed)? } else { Vec::new() };
+    let run = |mood| Session::run(scenarios[place], seed, length, &foreign, mood);
+    let (mut tally, _) = run(None).map_err(told)?;
     if seed % 8 == 1 {
-        let moody = run(Some(seed));
-        assert!(moody.last == tally.last, "other bits under another host\n{replay}");
+        let (moody, _) = run(Some(seed)).map_err(told)?;
+        if moody.last != tally.last {
+            return Err(told("other bits under another host".to_owned()));
+        }
         tally.add(moody);
     }
-    tally
+    Ok(tally)
 }
 
 /// Bytes of states of instances of another scenario.
-fn foreign(scenarios: &[Scenario], place: usize, seed: u64) -> Vec<Kept> {
+fn foreign(scenarios: &[Scenario], place: usize, seed: u64) -> Result<Vec<Kept>, String> {
     let other = (place + 1 + seed as usize / 4) % scenarios.len();
-    let outcome = Session::run(scenarios[other], u64::MAX - seed, 30, &[], None);
-    let (_, mut kept) =
-        outcome.unwrap_or_else(|what| panic!("{what}\nin the foreign sequence of {place} {seed}"));
+    let (_, mut kept) = Session::run(scenarios[other], u64::MAX - seed, 30, &[], None)
+        .map_err(|what| format!("{what}\nin the foreign sequence of {place} {seed}"))?;
     kept.iter_mut().for_each(|kept| kept.model = None);
-    kept
+    Ok(kept)
 }
 
 /// Every variable of every package was read; every one that may be set was set, to its declared limits, too.
@@ -168,5 +184,6 @@ fn a_hundred_thousand_random_calls_for_a_memory_checker() {
 fn replay() {
     let Ok(named) = std::env::var("RANDOM_CALLS") else { return };
     let numbers: Vec<u64> = named.split_whitespace().map(|number| number.parse().unwrap()).collect();
-    println!("{}", sequence(&Scenario::all(), numbers[0] as usize, numbers[1], numbers[2] as usize));
+    let outcome = sequence(&Scenario::all(), numbers[0] as usize, numbers[1], numbers[2] as usize);
+    println!("{}", outcome.unwrap_or_else(|what| panic!("{what}")));
 }

@@ -21,6 +21,9 @@ use super::scenario::{Choices, Scenario, free, instantiate};
 use super::tally::Tally;
 use super::{calling_fmi2, calling_fmi3};
 
+/// Lines of calls and results that a failure tells.
+const TRACE: usize = 16;
+
 /// Longest time that a call may take.
 const TIME_LIMIT: Duration = Duration::from_secs(10);
 
@@ -269,7 +272,7 @@ impl Session {
 
     fn remember(&self, line: String) {
         let mut trace = self.trace.borrow_mut();
-        if trace.len() == 60 {
+        if trace.len() == TRACE {
             trace.pop_front();
         }
         trace.push_back(line);
