@@ -42,8 +42,9 @@ pub fn is_finite(value: f64) -> bool {
 /// Whether `value` lies in the range, by the bits.
 #[inline]
 fn is_within(value: f64, (minimum, maximum): (f64, f64)) -> bool {
-    // The order of the bits knows two zeros.
-    let value = if value.to_bits() << 1 == 0 { 0.0 } else { value };
+    // The order of the bits knows two zeros. To ask for both of them would be turned into a comparison of numbers, by which
+    // a host that takes subnormal numbers for zero would find these in every range that begins at zero.
+    let value = if value.to_bits() == 1 << 63 { 0.0 } else { value };
     minimum.total_cmp(&value).is_le() && value.total_cmp(&maximum).is_le()
 }
 

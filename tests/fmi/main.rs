@@ -23,8 +23,6 @@ mod long_steps;
 mod model_exchange;
 mod panic;
 mod random;
-mod random_calls;
-mod random_exchange;
 mod refused_references;
 mod refused_values;
 mod round_trips;
