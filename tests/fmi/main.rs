@@ -22,6 +22,7 @@ mod logging;
 mod long_steps;
 mod model_exchange;
 mod panic;
+mod random;
 mod random_calls;
 mod random_exchange;
 mod refused_references;
@@ -30,6 +31,7 @@ mod round_trips;
 mod saved_state;
 mod scheduled_execution;
 mod sensor_readings;
+mod standard;
 mod steps;
 mod stop_time;
 #[cfg(feature = "tools")]

@@ -7,6 +7,8 @@ use std::alloc::{GlobalAlloc, Layout, System};
 thread_local! {
     /// Allocations that still succeed on this thread; `None` if all do.
     static LEFT: Cell<Option<u64>> = const { Cell::new(None) };
+    /// Whether one has failed since [`has_failed`] was asked.
+    static HAS_FAILED: Cell<bool> = const { Cell::new(false) };
     /// Blocks that this thread holds.
     static BLOCKS: Cell<i64> = const { Cell::new(0) };
 }
@@ -20,6 +22,9 @@ impl Failing {
             None => false,
             Some(left) => {
                 LEFT.set(Some(left.saturating_sub(1)));
+                if left == 0 {
+                    HAS_FAILED.set(true);
+                }
                 left == 0
             }
         }
@@ -61,6 +66,16 @@ static ALLOCATOR: Failing = Failing;
 /// Blocks that this thread holds.
 pub fn blocks() -> i64 {
     BLOCKS.get()
+}
+
+/// Lets so many allocations succeed from now on, or all; what was set before.
+pub fn limit(allocations: Option<u64>) -> Option<u64> {
+    LEFT.replace(allocations)
+}
+
+/// Whether an allocation has failed since this was asked last.
+pub fn has_failed() -> bool {
+    HAS_FAILED.take()
 }
 
 /// Result of `call` while only so many allocations succeed.

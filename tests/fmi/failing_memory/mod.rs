@@ -9,7 +9,8 @@ use core::mem::transmute;
 use core::ptr::{null, null_mut};
 use std::ffi::CString;
 
-use allocator::{blocks, with_memory_for};
+use allocator::with_memory_for;
+pub use allocator::{blocks, has_failed, limit};
 use maglev_fmu::fmi::fmi2::types::{
     FMI2_CO_SIMULATION, FMI2_MODEL_EXCHANGE, fmi2CallbackFunctions, fmi2CallbackLogger,
 };
