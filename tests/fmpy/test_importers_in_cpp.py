@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+import pytest
 from bearing import CONTROLLER_OUTPUTS, SAMPLE_TIME, STATE, Loop
 from fmpy import read_model_description
 from importers.in_cpp import load_ecos
