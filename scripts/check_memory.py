@@ -14,7 +14,9 @@ import sys
 from standard_calls import MEMORY
 
 TEST = "random::a_hundred_thousand_random_calls_for_a_memory_checker"
-VALGRIND = ["valgrind", "--leak-check=full", "--show-leak-kinds=definite,possible", "--num-callers=30"]
+# What the test program's own tables keep until it ends is "possibly" lost to valgrind, which sees no pointers inside.
+KINDS = "definite,indirect"
+VALGRIND = ["valgrind", "--leak-check=full", f"--show-leak-kinds={KINDS}", f"--errors-for-leak-kinds={KINDS}"]
 
 
 def test_program() -> str:
@@ -34,7 +36,7 @@ def main() -> None:
     errors = re.search(r"ERROR SUMMARY: ([\d,]+) errors", run.stdout)
     if run.returncode != 0 or calls is None or errors is None:
         sys.exit(f"the calls did not end well: {run.returncode}")
-    kinds = [r"definitely lost: ([\d,]+) bytes", r"possibly lost: ([\d,]+) bytes"]
+    kinds = [r"definitely lost: ([\d,]+) bytes", r"indirectly lost: ([\d,]+) bytes"]
     found = [re.search(kind, run.stdout) for kind in kinds]
     lost = sum(int(kind[1].replace(",", "")) for kind in found if kind)
     number_of_errors = int(errors[1].replace(",", ""))

@@ -241,9 +241,11 @@ impl Generator<'_> {
         };
         let kind = self.kind(suits);
         let function = self.accessor("Set", kind);
-        let references = self.references(5, move |variable| suits(variable) && variable.kind == kind);
-        let is_tame = self.is_tame;
+        let at_limits = !is_tame && self.dice.percent(35);
+        let most = if at_limits { 8 } else { 5 };
+        let references = self.references(most, move |variable| suits(variable) && variable.kind == kind);
         let values = references.iter().map(|reference| match self.description().find(*reference) {
+            Some(variable) if at_limits => values::limit(variable, self.dice),
             Some(variable) => values::of(variable, self.dice, is_tame),
             None => self.dice.wild(),
         });

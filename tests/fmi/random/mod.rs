@@ -27,6 +27,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
 
 use super::standard::{Causality, Deviations, Kind, ModelDescription, Table};
 use saved::Kept;
@@ -36,6 +37,9 @@ use tally::Tally;
 
 /// Calls on one instance.
 const LENGTH: usize = 100;
+
+/// Longest time that a call may take, ten times what the units allow themselves: machines are slow at times.
+const TIME_LIMIT: Duration = Duration::from_secs(10);
 
 /// Failures that are told apart, and how many of them are told.
 const TOLD: usize = 12;
@@ -69,6 +73,7 @@ fn run(seed: u64, sequences: u64) -> Tally {
     });
     let (tally, failures) = total.into_inner().unwrap();
     let told: Vec<_> = failures.values().take(TOLD).map(String::as_str).collect();
+    assert!(tally.longest < TIME_LIMIT, "a call computes for {:?}: {}", tally.longest, tally.longest_call);
     assert!(failures.is_empty(), "{} kinds of failures:\n\n{}", failures.len(), told.join("\n\n"));
     tally
 }

@@ -24,6 +24,16 @@ pub fn of(variable: &Variable, dice: &mut Dice, is_tame: bool) -> f64 {
     }
 }
 
+/// The smallest or the largest value.
+pub fn limit(variable: &Variable, dice: &mut Dice) -> f64 {
+    let (smallest, largest) = variable.range;
+    match variable.kind {
+        Kind::Boolean => dice.below(2) as f64,
+        _ if dice.percent(50) => smallest,
+        _ => largest,
+    }
+}
+
 fn real(variable: &Variable, dice: &mut Dice, is_tame: bool) -> f64 {
     let (smallest, largest) = variable.range;
     let chance = if is_tame { dice.below(60) } else { dice.below(100) };
