@@ -101,6 +101,11 @@ fn the_default_suits_large_fmus_but_no_bomb() {
 fn sizes_are_counted_and_not_believed() {
     let (_directory, path) = archive(&[("zeros", &[0; 70_001])]);
     forge(&path, &70_001_u32.to_le_bytes(), &7_u32.to_le_bytes());
+    // The reader of archives stops at the declared size, the host at the limit, whichever is smaller.
+    let error = refused(&path, &SMALL);
+    assert!(matches!(&error, HostError::Unpack { entry, .. } if entry == "zeros"), "{error}");
+    let (_directory, path) = archive(&[("zeros", &[0; 70_001])]);
+    forge(&path, &70_001_u32.to_le_bytes(), &100_000_u32.to_le_bytes());
     let error = refused(&path, &SMALL);
     assert!(matches!(error, HostError::OverLimit { name: "entry_bytes", .. }), "{error}");
 }

@@ -15,7 +15,7 @@ pub struct Callbacks2 {
 
 enum Log { Two(*const Callbacks2), Three(*mut c_void, Logger3) }
 
-// Reals: 0 u, 1 y, 2 a, 3 b. Others: 0.
+// Reals: 0 u, 1 y, 2 a, 3 b. Of FMI 2.0, integers: 0 steps, 1 mode; of FMI 3.0: 5 steps, 6 mode.
 pub struct Unit { reals: [f64; 4], steps: i64, flag: u8, mode: i64, saved: f64, log: Log }
 
 fn unit(log: Log) -> *mut Unit {
@@ -103,7 +103,7 @@ unsafe fn set(unit: *mut Unit, references: *const u32, count: usize, values: *co
     *v = if *r == 0 { (*unit).steps } else { (*unit).mode } as i32; 0
 }
 #[no_mangle] pub unsafe extern "C" fn fmi3GetInt64(unit: *mut Unit, r: *const u32, _: usize, v: *mut i64, _: usize) -> i32 {
-    *v = if *r == 0 { (*unit).steps } else { (*unit).mode }; 0
+    *v = if *r == 5 { (*unit).steps } else { (*unit).mode }; 0
 }
 #[no_mangle] pub unsafe extern "C" fn fmi2SetInteger(unit: *mut Unit, _: *const u32, _: usize, v: *const i32) -> i32 { (*unit).mode = *v as i64; 0 }
 #[no_mangle] pub unsafe extern "C" fn fmi3SetInt64(unit: *mut Unit, _: *const u32, _: usize, v: *const i64, _: usize) -> i32 { (*unit).mode = *v; 0 }

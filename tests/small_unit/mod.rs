@@ -38,10 +38,10 @@ pub const FMI3: &str = r#"<fmiModelDescription fmiVersion="3.0" modelName="Three
 <Float64 name="a" valueReference="2" causality="parameter"/>
 <Float64 name="b" valueReference="3" causality="parameter"/>
 <Float64 name="vector" valueReference="4" causality="parameter"><Dimension start="3"/></Float64>
-<Int64 name="steps" valueReference="0" causality="output"/>
-<Enumeration name="mode" valueReference="1" declaredType="Mode" causality="parameter"/>
-<Boolean name="flag" valueReference="0" causality="input"/>
-<Int16 name="text" valueReference="0"/>
+<Int64 name="steps" valueReference="5" causality="output"/>
+<Enumeration name="mode" valueReference="6" declaredType="Mode" causality="parameter"/>
+<Boolean name="flag" valueReference="7" causality="input"/>
+<Int16 name="text" valueReference="8"/>
 </ModelVariables></fmiModelDescription>"#;
 
 /// Compiles a shared library.

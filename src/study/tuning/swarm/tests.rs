@@ -67,7 +67,7 @@ fn printed_settings_diverge() {
     assert!(BOX.iter().zip(&optimum.position).all(|((low, high), value)| (low..=high).contains(&value)));
 }
 
-/// Guards: positions overflow after some 7000 iterations, and no share of an infinite way can be drawn.
+/// Guards: positions overflow after some ten thousand iterations, and no share of an infinite way can be drawn.
 #[test]
 fn a_swarm_that_diverges_ends_with_the_best_so_far() {
     let settings = SwarmSettings { iterations: 14_000, ..SwarmSettings::PRINTED };
