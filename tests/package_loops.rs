@@ -148,7 +148,7 @@ fn steps_that_lose_the_loop_are_refused() {
     for system in [&BEARING, &BALL, &RIG] {
         let refused = Run::of(system, 0.01, 1.0, [&["position"], &["voltage"]]);
         let message = refused.err().expect("refused").to_string();
-        assert!(message.contains("a step of 0.01 s: expected at most 0.001 s"), "{message}");
+        assert!(message.contains("a step of 0.01 s: expected at most longest_step = 0.001 s"), "{message}");
     }
 }
 

@@ -50,6 +50,9 @@ fn outputs_are_finite_at_declared_limits() {
             for (row, variable) in variables.iter().enumerate().filter(|(_, row)| !row.is_calculated()) {
                 unit.values_mut()[row] = extreme(variable, &mut random);
             }
+            // The steps below are those of the sample time.
+            let (longest_step, _) = unit.description().find("longest_step").unwrap();
+            unit.values_mut()[longest_step] = variables[longest_step].start;
             unit.initialise(0.0).unwrap();
             if unit.check_parameters().is_err() {
                 continue;

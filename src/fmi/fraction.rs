@@ -103,7 +103,8 @@ mod tests {
             let number = (start / period) as i64 + 1 + steps;
             if let Some((counter, resolution)) = time_from(start, number, period) {
                 let expected = number as f64 * period - start;
-                prop_assert!((counter as f64 / resolution as f64 - expected).abs() <= 1e-12 * (1.0 + start));
+                let rounding = 4.0 * f64::EPSILON * (number as f64 * period + start);
+                prop_assert!((counter as f64 / resolution as f64 - expected).abs() <= rounding);
             }
         }
 

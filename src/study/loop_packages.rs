@@ -68,8 +68,10 @@ impl LoopPackages {
         let mut control_loop =
             TwoUnitLoop::connect(controller, plant, ExchangeOrder::ControllerFirst, sensing, actuation)?;
         control_loop.record(record)?;
-        control_loop.initialise(0.0, Some(duration), sample_time)?;
-        Ok(control_loop.run_with((duration / sample_time).round() as usize + 1, stimulus)?)
+        // The last row, at the end, belongs to a step that begins there.
+        let steps = (duration / sample_time).round() as usize + 1;
+        control_loop.initialise(0.0, Some(steps as f64 * sample_time), sample_time)?;
+        Ok(control_loop.run_with(steps, stimulus)?)
     }
 }
 

@@ -24,7 +24,7 @@ pub fn check_step(duration: f64, limit: f64) -> Result<(), UnitError> {
     if duration <= limit * (1.0 + ROUNDING) {
         Ok(())
     } else {
-        Err(UnitError::StepTooLong { duration, limit })
+        Err(UnitError::BeyondLongestStep { duration, limit })
     }
 }
 
@@ -37,6 +37,6 @@ mod tests {
         assert_eq!(check_step(1e-3, 1e-3), Ok(()));
         assert_eq!(check_step(1e-3 + 1e-15, 1e-3), Ok(()), "rounded");
         let refused = check_step(0.01, 1e-3).unwrap_err();
-        assert_eq!(refused.to_string(), "a step of 0.01 s: expected at most 0.001 s");
+        assert_eq!(refused.to_string(), "a step of 0.01 s: expected at most longest_step = 0.001 s");
     }
 }

@@ -87,6 +87,11 @@ pub enum UnitError {
     )]
     StepTooLong { duration: f64, limit: f64 },
     #[error(
+        "a step of {duration} s: expected at most longest_step = {limit} s",
+        duration = Readable(*duration), limit = Readable(*limit)
+    )]
+    BeyondLongestStep { duration: f64, limit: f64 },
+    #[error(
         "{first} and {second} are both {value} {unit}: expected two different numbers", value = Readable(*value)
     )]
     Equal { first: &'static str, second: &'static str, value: f64, unit: &'static str },

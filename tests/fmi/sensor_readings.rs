@@ -139,7 +139,7 @@ fn an_importer_that_integrates_comes_to_every_reading_once() {
             let read = component.get(reading);
             assert_eq!(component.event_iteration().2, next);
             assert_eq!(component.get(reading).to_bits(), read.to_bits(), "{context}");
-            time = event;
+            time = event + lateness;
         }
     }
 }

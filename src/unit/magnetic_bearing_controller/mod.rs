@@ -159,8 +159,8 @@ impl Unit for MagneticBearingController {
     }
 
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError> {
-        check_step(duration, self.values[LONGEST_STEP])?;
         let (clock, ticks) = self.affordable_ticks(duration)?;
+        check_step(duration, self.values[LONGEST_STEP])?;
         self.clock = clock;
         for k in ticks {
             self.tick_at(clock.time_of(k), journal);
