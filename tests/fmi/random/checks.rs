@@ -126,7 +126,7 @@ impl Session {
         match status {
             0 if values.iter().all(|value| value.is_finite()) => Ok(()),
             2 => Ok(()),
-            3 if !model.is_known || (is_initial && model.is_changed) => Ok(()),
+            3 if !model.is_known || (is_initial && model.may_be_refused()) => Ok(()),
             _ => Err(format!("values after {call:?}: status {status}, {values:?}")),
         }
     }
