@@ -88,7 +88,7 @@ fn kind(failure: &str) -> String {
 /// the same bits at their end.
 fn sequence(scenarios: &[Scenario], place: usize, seed: u64, length: usize) -> Result<Tally, String> {
     let told = |what| format!("{what}\nRANDOM_CALLS=\"{place} {seed} {length}\"");
-    let foreign = if seed % 4 == 0 { foreign(scenarios, place, seed)? } else { Vec::new() };
+    let foreign = if seed.is_multiple_of(4) { foreign(scenarios, place, seed)? } else { Vec::new() };
     let run = |mood| Session::run(scenarios[place], seed, length, &foreign, mood);
     let (mut tally, _) = run(None).map_err(told)?;
     if seed % 8 == 1 {
@@ -175,9 +175,9 @@ fn a_hundred_thousand_random_calls_for_a_memory_checker() {
     let scenarios = Scenario::all();
     let sequences = 100_000_u64.div_ceil((scenarios.len() * LENGTH) as u64);
     let mut tally = Tally::default();
-    for place in 0..scenarios.len() {
+    for scenario in &scenarios {
         for seed in 0..sequences {
-            let outcome = Session::run(scenarios[place], (1 << 33) + seed, LENGTH, &[], None);
+            let outcome = Session::run(*scenario, (1 << 33) + seed, LENGTH, &[], None);
             tally.add(outcome.unwrap_or_else(|what| panic!("{what}")).0);
         }
     }
