@@ -8,6 +8,7 @@
 mod answer;
 mod arguments;
 mod call;
+mod callbacks;
 mod calling_fmi2;
 mod calling_fmi3;
 mod checks;
@@ -17,6 +18,7 @@ mod generator;
 mod log;
 mod model;
 mod oracle;
+mod rarer_calls;
 mod saved;
 mod scenario;
 mod session;
@@ -151,7 +153,8 @@ fn random_calls_agree_with_the_standards() {
     }
 }
 
-/// Ten million calls, in minutes: `cargo test --release --test fmi ten_million -- --ignored`. Writes the figures that
+/// Ten million calls, in minutes: `cargo test --test fmi ten_million -- --ignored`, with `--release` or without. Writes
+/// the figures that
 /// docs/conformance.md tells.
 #[test]
 #[ignore = "takes minutes"]
