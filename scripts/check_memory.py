@@ -32,7 +32,7 @@ def main() -> None:
     command = [*VALGRIND, test_program(), "--ignored", "--exact", TEST, "--nocapture", "--test-threads=1"]
     run = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     print(run.stdout)
-    calls = re.search(r"^(\d+) calls", run.stdout, re.MULTILINE)
+    calls = re.search(r"(\d+) calls", run.stdout)
     errors = re.search(r"ERROR SUMMARY: ([\d,]+) errors", run.stdout)
     if run.returncode != 0 or calls is None or errors is None:
         sys.exit(f"the calls did not end well: {run.returncode}")

@@ -95,6 +95,11 @@ pub enum UnitError {
         "{first} and {second} are both {value} {unit}: expected two different numbers", value = Readable(*value)
     )]
     Equal { first: &'static str, second: &'static str, value: f64, unit: &'static str },
+    #[error(
+        "startTime = {start_time} s: expected {limit} s at most, either side of 0, to count ticks every {period} s",
+        start_time = Readable(*start_time), limit = Readable(*limit)
+    )]
+    StartOutOfReach { start_time: f64, period: f64, limit: f64 },
     #[error("{name} = {value} {unit}: expected {expected}", value = Readable(*value))]
     Unusable { name: &'static str, value: f64, unit: &'static str, expected: &'static str },
 }

@@ -5,10 +5,14 @@
 //! belongs to a step only if it lies more than a ten-thousandth of a period before the step's end. Ticks thus never
 //! depend on how the interval was cut into steps, not even when an importer rounds its step size to some ten digits.
 
+use super::UnitError;
 use serde::{Deserialize, Serialize};
 
 /// Share of a period by which a communication point may miss a tick and still mean it.
 const TOLERANCE: f64 = 1e-4;
+
+/// Largest number of a tick at a start: there the rounding of a quotient is half a period.
+const LARGEST_NUMBER: f64 = 281_474_976_710_656.0;
 
 /// Clock with integer ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -28,6 +32,16 @@ impl SampleClock {
         let mut clock = Self { period, elapsed: (start_time, 0.0), next: 0 };
         clock.next = clock.first_tick_not_before_now();
         clock
+    }
+
+    /// As [`SampleClock::new`]; refused where the numbers of neighbouring ticks have no different times any more.
+    pub fn starting(period: f64, start_time: f64) -> Result<Self, UnitError> {
+        let limit = LARGEST_NUMBER * period;
+        if start_time.abs() <= limit {
+            Ok(Self::new(period, start_time))
+        } else {
+            Err(UnitError::StartOutOfReach { start_time, period, limit })
+        }
     }
 
     /// Lets `duration` \[s\] pass and returns the numbers of the ticks in it, its start included, its end not.
@@ -141,11 +155,14 @@ impl SampleClock {
     /// Whether a clock with this `period` \[s\] can stand here; false for numbers that no clock ever has.
     pub fn may_stand_where_it_does(&self, period: f64) -> bool {
         let due = self.first_tick_not_before_now();
+        // So far away that rounding is more than a period, ticks may have been counted that the quotient does not show.
+        let periods = (self.elapsed.0 + self.elapsed.1) / self.period;
+        let hidden = (3.0 * tolerance(periods)) as i64;
         self.period == period
             && period > 0.0
             && self.elapsed.0.is_finite()
             && self.elapsed.1.is_finite()
-            && (due..=due.saturating_add(1)).contains(&self.next)
+            && (due..=due.saturating_add(1).saturating_add(hidden)).contains(&self.next)
     }
 
     /// Time of tick `k` \[s\].
@@ -175,6 +192,36 @@ fn tolerance(periods: f64) -> f64 {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn a_start_where_ticks_cannot_be_told_apart_is_refused() {
+        for period in [1e-6, 1e-3, 1.0] {
+            let limit = LARGEST_NUMBER * period;
+            for start_time in [limit, -limit, 0.0] {
+                let mut clock = SampleClock::starting(period, start_time).unwrap();
+                // Rounding is half a period there, so that the second one may be yet to come.
+                let ticks = clock.advance(1.5 * period);
+                assert!((1..=2).contains(&(ticks.end - ticks.start)), "{period} {start_time} {ticks:?}");
+                assert!(clock.may_stand_where_it_does(period));
+            }
+            for start_time in [limit.next_up(), -limit.next_up(), 1e300, -1e300] {
+                let refused = SampleClock::starting(period, start_time);
+                assert_eq!(refused, Err(UnitError::StartOutOfReach { start_time, period, limit }));
+            }
+        }
+    }
+
+    #[test]
+    fn a_clock_far_away_stands_where_it_has_come_to() {
+        for time in [1e15, 2.3e16, 1e300] {
+            let mut clock = SampleClock::new(1e-3, 0.0);
+            clock.stand_at(time);
+            for _ in 0..1000 {
+                clock.advance_through(0.0);
+                assert!(clock.may_stand_where_it_does(1e-3), "{time}");
+            }
+        }
+    }
 
     #[test]
     fn ticks_lie_in_the_half_open_interval() {

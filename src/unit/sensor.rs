@@ -59,14 +59,20 @@ pub(super) struct Readings {
 }
 
 impl Sensor {
+    /// A sensor that is read by nobody yet.
+    pub(super) fn new() -> Self {
+        Self { noise: GaussianNoise::new(0, STREAM), clock: None }
+    }
+
     /// A sensor at `start_time` \[s\], where it is about to be read.
-    pub(super) fn start(seed: f64, sample_time: f64, start_time: f64) -> Self {
-        let clock = (sample_time > 0.0).then(|| {
-            let mut clock = SampleClock::new(sample_time, start_time);
-            clock.advance_through(0.0);
-            clock
-        });
-        Self { noise: GaussianNoise::new(seed as u64, STREAM), clock }
+    pub(super) fn start(seed: f64, sample_time: f64, start_time: f64) -> Result<Self, UnitError> {
+        let mut clock = None;
+        if sample_time > 0.0 {
+            let mut ticking = SampleClock::starting(sample_time, start_time)?;
+            ticking.advance_through(0.0);
+            clock = Some(ticking);
+        }
+        Ok(Self { noise: GaussianNoise::new(seed as u64, STREAM), clock })
     }
 
     /// First number of the noise that comes from a seed.

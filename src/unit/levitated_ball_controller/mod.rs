@@ -150,7 +150,7 @@ impl Unit for LevitatedBallController {
     fn initialise(&mut self, start_time: f64) -> Result<(), UnitError> {
         let values = &mut self.values;
         self.law = law(values);
-        self.clock = SampleClock::new(values[SAMPLE_TIME], start_time);
+        self.clock = SampleClock::starting(values[SAMPLE_TIME], start_time)?;
         self.start_delay = StartDelay::new(start_time, values[START_DELAY], values[SAMPLE_TIME]);
         self.reference = BallReferenceFilter::new(values[INITIAL_REFERENCE]);
         self.observer = BallObserver::new(observer_settings(values), initial_estimate(values));

@@ -45,7 +45,7 @@ impl LevitatedBallPlant {
             contact: Contact::None,
             slope: Drive::default(),
             solver: Solver::default(),
-            sensor: Sensor::start(0.0, 0.0, 0.0),
+            sensor: Sensor::new(),
         }
     }
 
@@ -111,13 +111,14 @@ impl Unit for LevitatedBallPlant {
 
     fn initialise(&mut self, start_time: f64) -> Result<(), UnitError> {
         let values = &mut self.values;
+        let sensor = Sensor::start(values[SENSOR_SEED], values[SENSOR_SAMPLE_TIME], start_time)?;
         self.ball = ball(values);
         values[TIME] = start_time;
         values[VOLTAGE_MEASURED] = 0.0;
         let mut state = [values[INITIAL_POSITION], values[INITIAL_VELOCITY], values[INITIAL_FLUX]];
         let driven = DrivenBall::new(&self.ball, values[LOWER_STOP], Drive::default());
         let contact = transition(&driven, &mut state, Contact::None);
-        self.sensor = Sensor::start(values[SENSOR_SEED], values[SENSOR_SAMPLE_TIME], start_time);
+        self.sensor = sensor;
         self.set_state(state, contact);
         self.evaluate();
         if self.sensor.is_read(self.solver) {

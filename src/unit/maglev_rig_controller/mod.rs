@@ -178,7 +178,7 @@ impl Unit for MaglevRigController {
     fn initialise(&mut self, start_time: f64) -> Result<(), UnitError> {
         self.adopt_parameters();
         let values = &mut self.values;
-        self.clock = SampleClock::new(values[SAMPLE_TIME], start_time);
+        self.clock = SampleClock::starting(values[SAMPLE_TIME], start_time)?;
         self.start_delay = StartDelay::new(start_time, values[START_DELAY], values[SAMPLE_TIME]);
         self.pid = DigitalPid::default();
         self.reference = Reference::at_rest(values[REFERENCE]);

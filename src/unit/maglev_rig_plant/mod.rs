@@ -46,7 +46,7 @@ impl MaglevRigPlant {
             voltage_slope: 0.0,
             force_slope: 0.0,
             solver: Solver::default(),
-            sensor: Sensor::start(0.0, 0.0, 0.0),
+            sensor: Sensor::new(),
         }
     }
 
@@ -171,9 +171,10 @@ impl Unit for MaglevRigPlant {
 
     fn initialise(&mut self, start_time: f64) -> Result<(), UnitError> {
         let values = &mut self.values;
+        let sensor = Sensor::start(values[SENSOR_SEED], values[SENSOR_SAMPLE_TIME], start_time)?;
         values[TIME] = start_time;
         let start = State { position: values[INITIAL_POSITION], velocity: values[INITIAL_VELOCITY] };
-        self.sensor = Sensor::start(values[SENSOR_SEED], values[SENSOR_SAMPLE_TIME], start_time);
+        self.sensor = sensor;
         // Before the first step no voltage has acted.
         let (state, contact) = self.ball(0.0, 0.0).settle(start);
         self.echo(0.0);

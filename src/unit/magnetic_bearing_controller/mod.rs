@@ -137,7 +137,7 @@ impl Unit for MagneticBearingController {
         self.adopt_parameters();
         let values = &mut self.values;
         let initial = initial_estimate(values);
-        self.clock = SampleClock::new(values[SAMPLE_TIME], start_time);
+        self.clock = SampleClock::starting(values[SAMPLE_TIME], start_time)?;
         self.start_delay = StartDelay::new(start_time, values[START_DELAY], values[SAMPLE_TIME]);
         self.observer = BearingObserver::new(observer_settings(values), initial);
         self.awaits_first_tick = true;

@@ -147,7 +147,7 @@ impl MagneticBearingPlant {
             voltage_slope: 0.0,
             is_flux_positive: true,
             solver: Solver::default(),
-            sensor: Sensor::start(0.0, 0.0, 0.0),
+            sensor: Sensor::new(),
             process_noise: GaussianNoise::new(0, PROCESS_STREAM),
         }
     }
@@ -206,6 +206,7 @@ impl Unit for MagneticBearingPlant {
 
     fn initialise(&mut self, start_time: f64) -> Result<(), UnitError> {
         let values = &mut self.values;
+        let sensor = Sensor::start(values[SENSOR_SEED], values[SENSOR_SAMPLE_TIME], start_time)?;
         self.bearing = MagneticBearing::with_bias(values[BIAS_FLUX], values[SATURATION_FLUX]);
         values[EPSILON] = self.bearing.epsilon;
         values[TIME] = start_time;
@@ -216,7 +217,7 @@ impl Unit for MagneticBearingPlant {
             flux: values[INITIAL_FLUX],
         };
         self.is_flux_positive = state.flux >= 0.0;
-        self.sensor = Sensor::start(values[SENSOR_SEED], values[SENSOR_SAMPLE_TIME], start_time);
+        self.sensor = sensor;
         self.process_noise = GaussianNoise::new(values[SENSOR_SEED] as u64, PROCESS_STREAM);
         self.set_state(state);
         self.evaluate();

@@ -22,6 +22,7 @@ use maglev_fmu::unit::{Description, Edition, UNITS};
 pub use exchange::plants;
 pub use instantiate::{instantiate, instantiate_with};
 pub use recorder::{Message, Recorder, fmi2_logger, fmi3_logger};
+#[allow(unused_imports, reason = "each test binary uses a part")]
 pub use state::State;
 
 pub const PLANT: &str = "MagneticBearingPlant";

@@ -26,7 +26,7 @@ pub fn judge(oracle: &Oracle, call: &Call, saved: &dyn Fn(usize) -> Option<Model
     let (model, description) = (oracle.model, oracle.scenario.description);
     let is_initial = matches!(model.state, State::Instantiated | State::Initialization);
     // What initialisation computes may be refused with the parameters that were set.
-    let unless_changed = |otherwise| if is_initial && model.is_changed { Open } else { otherwise };
+    let unless_changed = |otherwise| if is_initial && model.may_be_refused() { Open } else { otherwise };
     match call {
         Call::Logging { categories, is_null, .. } => {
             let is_wrong = |category: &Category| !matches!(category, Category::Declared(_));
@@ -36,7 +36,11 @@ pub fn judge(oracle: &Oracle, call: &Call, saved: &dyn Fn(usize) -> Option<Model
         Call::EnterInitialization(experiment) if oracle.standard() == Standard::Fmi3 => begin(experiment),
         Call::EnterInitialization(_) => Good,
         Call::Plain(function) if function.ends_with("ExitInitializationMode") => {
-            if model.is_changed || model.start.abs() > 1e6 { Open } else { Good }
+            if model.may_be_refused() {
+                Open
+            } else {
+                Good
+            }
         }
         Call::Plain(_) | Call::UpdateDiscreteStates { .. } | Call::CompletedStep { .. } | Call::Count(_) => {
             Good

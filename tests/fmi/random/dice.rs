@@ -7,7 +7,7 @@ pub struct Dice(Pcg64);
 
 impl Dice {
     pub fn new(seed: u64) -> Self {
-        Self(Pcg64::new(seed.into(), 0xa02b_dbf7_bb3c_0a7a_c28f_a16a_64ab_f96))
+        Self(Pcg64::new(seed.into(), 0x0a02_bdbf_7bb3_c0a7_ac28_fa16_a64a_bf96))
     }
 
     /// 0 to `count` - 1.

@@ -8,6 +8,7 @@
 mod answer;
 mod arguments;
 mod call;
+mod callbacks;
 mod calling_fmi2;
 mod calling_fmi3;
 mod checks;
@@ -17,6 +18,7 @@ mod generator;
 mod log;
 mod model;
 mod oracle;
+mod rarer_calls;
 mod saved;
 mod scenario;
 mod session;
@@ -88,7 +90,7 @@ fn kind(failure: &str) -> String {
 /// the same bits at their end.
 fn sequence(scenarios: &[Scenario], place: usize, seed: u64, length: usize) -> Result<Tally, String> {
     let told = |what| format!("{what}\nRANDOM_CALLS=\"{place} {seed} {length}\"");
-    let foreign = if seed % 4 == 0 { foreign(scenarios, place, seed)? } else { Vec::new() };
+    let foreign = if seed.is_multiple_of(4) { foreign(scenarios, place, seed)? } else { Vec::new() };
     let run = |mood| Session::run(scenarios[place], seed, length, &foreign, mood);
     let (mut tally, _) = run(None).map_err(told)?;
     if seed % 8 == 1 {
@@ -151,7 +153,8 @@ fn random_calls_agree_with_the_standards() {
     }
 }
 
-/// Ten million calls, in minutes: `cargo test --release --test fmi ten_million -- --ignored`. Writes the figures that
+/// Ten million calls, in minutes: `cargo test --test fmi ten_million -- --ignored`, with `--release` or without. Writes
+/// the figures that
 /// docs/conformance.md tells.
 #[test]
 #[ignore = "takes minutes"]
@@ -175,9 +178,9 @@ fn a_hundred_thousand_random_calls_for_a_memory_checker() {
     let scenarios = Scenario::all();
     let sequences = 100_000_u64.div_ceil((scenarios.len() * LENGTH) as u64);
     let mut tally = Tally::default();
-    for place in 0..scenarios.len() {
+    for scenario in &scenarios {
         for seed in 0..sequences {
-            let outcome = Session::run(scenarios[place], (1 << 33) + seed, LENGTH, &[], None);
+            let outcome = Session::run(*scenario, (1 << 33) + seed, LENGTH, &[], None);
             tally.add(outcome.unwrap_or_else(|what| panic!("{what}")).0);
         }
     }

@@ -118,6 +118,11 @@ impl Model {
         }
     }
 
+    /// Whether initialisation may refuse what was set, or a start time so far away that ticks cannot be counted there.
+    pub fn may_be_refused(&self) -> bool {
+        self.is_changed || self.start.abs() > 1e8
+    }
+
     /// Earliest time that may be set in model exchange (FMI 3.0.2, section 3.2.1) \[s\].
     pub fn earliest(&self) -> f64 {
         self.start.max(self.last_event).max(self.completed[0])

@@ -7,9 +7,10 @@ use std::collections::VecDeque;
 use std::time::Instant;
 
 use super::super::harness::Standard;
-use super::super::standard::{Interface, State};
+use super::super::standard::Interface;
 use super::answer::Answer;
 use super::call::Call;
+use super::callbacks::{clock_update, intermediate_update};
 use super::dice::Dice;
 use super::environment::{self, Host};
 use super::generator::{Generator, SLOTS};
@@ -23,11 +24,6 @@ use super::{calling_fmi2, calling_fmi3};
 
 /// Lines of calls and results that a failure tells.
 const TRACE: usize = 16;
-
-thread_local! {
-    /// The session whose callbacks are called on this thread.
-    static CURRENT: Cell<*const Session> = const { Cell::new(core::ptr::null()) };
-}
 
 pub struct Session {
     pub scenario: Scenario,
@@ -45,15 +41,15 @@ pub struct Session {
     has_moods: bool,
     is_tame: bool,
     /// Whether a callback has reset or restored the instance.
-    has_left: Cell<bool>,
+    pub has_left: Cell<bool>,
     /// Serialised state as of the last call.
     pub present: RefCell<Vec<u8>>,
     /// What was called, and what came of it.
     trace: RefCell<VecDeque<String>>,
     /// What went wrong within a callback, to be told once the library has returned.
-    failure: RefCell<Option<String>>,
+    pub failure: RefCell<Option<String>>,
     /// Time of the last callback, or begin, of the step in progress, and its end.
-    step: Cell<(f64, f64)>,
+    pub step: Cell<(f64, f64)>,
     /// Memory for the present state.
     pub scratch: Cell<Handle>,
 }
@@ -77,9 +73,7 @@ impl Session {
         {
             session.tally.borrow_mut().meet("clocks-without-events");
         }
-        CURRENT.set(&session);
-        let outcome = session.calls(count);
-        CURRENT.set(core::ptr::null());
+        let outcome = session.while_current(|| session.calls(count));
         outcome.map_err(|what| session.report(&what))?;
         session.tally.borrow_mut().last = session.present.take();
         let own = session.kept.borrow().iter().skip(foreign.len()).take(1).cloned().collect();
@@ -158,7 +152,7 @@ impl Session {
     }
 
     /// A random call, and all checks after it.
-    fn act(&self) -> Result<(), String> {
+    pub fn act(&self) -> Result<(), String> {
         let (call, verdict) = {
             let (model, mut dice) = (self.model.borrow(), self.dice.borrow_mut());
             let saved = |slot: usize| self.slots.borrow()[slot].as_ref().map(|(_, model)| model.clone());
@@ -280,45 +274,6 @@ impl Session {
         let is_moody = self.has_moods && !self.model.borrow().state.is_in_callback() && moods.percent(20);
         Host { allocations, control: is_moody.then(|| moods.pick(&environment::CONTROLS)) }
     }
-
-    /// A call whose callback has reset or restored the instance, which has no step to return to.
-    fn come_back(&self, call: &Call, answer: &Answer) -> Result<(), String> {
-        if answer.status != 3 {
-            return Err(format!("{call:?} returns {} although the instance was taken away", answer.status));
-        }
-        self.model.borrow_mut().has_erred = true;
-        self.look()
-    }
-
-    /// Random calls within a callback.
-    fn call_back(&self, state: State) -> Option<f64> {
-        let before = self.model.borrow().state;
-        self.model.borrow_mut().state = state;
-        self.model.borrow_mut().has_set = false;
-        let count = self.dice.borrow_mut().below(4);
-        for _ in 0..count {
-            if let Err(failure) = self.act() {
-                self.failure.borrow_mut().get_or_insert(failure);
-                break;
-            }
-            if self.model.borrow().state != state {
-                self.has_left.set(true);
-                return None;
-            }
-        }
-        self.model.borrow_mut().state = before;
-        let mut dice = self.dice.borrow_mut();
-        let (begin, end) = self.step.get();
-        dice.percent(10).then(|| match dice.below(10) {
-            0 => dice.odd(),
-            1 => dice.wild(),
-            _ => dice.between(begin, end),
-        })
-    }
-
-    fn object(&self, what: String) {
-        self.failure.borrow_mut().get_or_insert(what);
-    }
 }
 
 impl Drop for Session {
@@ -327,60 +282,6 @@ impl Drop for Session {
         // SAFETY: a live handle, freed once.
         unsafe { free(self.scenario.description.standard, self.handle) };
     }
-}
-
-/// The session of this thread, if the environment is its own.
-fn current(environment: *mut c_void, is_that_of_the_host: bool) -> Option<&'static Session> {
-    // SAFETY: set while a session makes calls, and callbacks are made within calls only.
-    let session = unsafe { CURRENT.get().as_ref() }?;
-    if environment != core::ptr::from_ref(&*session.log).cast_mut().cast() {
-        session.object("a callback with another environment".into());
-    }
-    if !is_that_of_the_host {
-        session.object("a callback in another floating-point environment than that of the host".into());
-    }
-    Some(session)
-}
-
-unsafe extern "C-unwind" fn intermediate_update(
-    environment: *mut c_void,
-    time: f64,
-    _: u8,
-    _: u8,
-    _: u8,
-    may_return_early: u8,
-    early_return_requested: *mut u8,
-    early_return_time: *mut f64,
-) {
-    let is_that_of_the_host = environment::is_that_of_the_host();
-    environment::at_home(|| {
-        let Some(session) = current(environment, is_that_of_the_host) else { return };
-        let (last, end) = session.step.get();
-        if !(time >= last && time <= end) {
-            session.object(format!("a callback at {time}, after {last} and before {end}"));
-        }
-        if (may_return_early != 0) != session.choices.may_return_early {
-            session.object("a callback that promises another early return than was agreed upon".into());
-        }
-        session.step.set((time, end));
-        session.model.borrow_mut().time = time;
-        if let Some(asked) = session.call_back(State::Intermediate) {
-            // SAFETY: both results are writable.
-            unsafe {
-                early_return_requested.write(1);
-                early_return_time.write(asked);
-            }
-        }
-    });
-}
-
-unsafe extern "C-unwind" fn clock_update(environment: *mut c_void) {
-    let is_that_of_the_host = environment::is_that_of_the_host();
-    environment::at_home(|| {
-        if let Some(session) = current(environment, is_that_of_the_host) {
-            session.call_back(State::Update);
-        }
-    });
 }
 
 /// What the standard says, for the tally.

@@ -127,7 +127,7 @@ impl Tally {
     pub fn figures(&self, scenarios: usize) -> String {
         let [ok, warning, discard, error] = self.statuses;
         let head = format!(
-            "# Written by `cargo test --release --test fmi ten_million -- --ignored`.\ncalls = {}\nnested = {}\n\
+            "# Written by `cargo test --test fmi ten_million -- --ignored`.\ncalls = {}\nnested = {}\n\
              instances = {}\nscenarios = {scenarios}\nok = {}\ndiscard = {discard}\nerror = {error}\n\
              longest = {:.3}\n\n[deviations]\n",
             self.calls(),
