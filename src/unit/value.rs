@@ -36,21 +36,14 @@ impl fmt::Display for Readable {
 #[inline]
 pub fn is_finite(value: f64) -> bool {
     const EXPONENT: u64 = 0x7FF << 52;
-    bits(value) & EXPONENT != EXPONENT
+    value.to_bits() & EXPONENT != EXPONENT
 }
 
 /// Whether `value` lies in the range, by the bits.
 #[inline]
 fn is_within(value: f64, (minimum, maximum): (f64, f64)) -> bool {
-    let value = order(bits(value));
+    let value = order(value.to_bits());
     order(minimum.to_bits()) <= value && value <= order(maximum.to_bits())
-}
-
-/// Bits of a number of which the compiler does not know that they are those of a number: it would take a test of them
-/// for one of the number, and compare numbers after all.
-#[inline]
-fn bits(value: f64) -> u64 {
-    core::hint::black_box(value.to_bits())
 }
 
 /// Integers in the order of the finite numbers with these bits; the two zeros are one.

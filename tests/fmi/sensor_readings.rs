@@ -129,7 +129,7 @@ fn an_importer_that_integrates_comes_to_every_reading_once() {
             assert_eq!(component.get(reading).to_bits(), held.to_bits(), "held until the event");
             assert_ne!(component.get(value), held);
             // Both standards let an importer be a little late, and rounding makes it early.
-            let lateness = [0.0, 1e-12, -1e-12, 3e-8][k % 4];
+            let lateness = [0.0, 1e-12, -1e-12, 3e-12][k % 4];
             assert_eq!(component.set_time(event + lateness), OK);
             assert_eq!(component.enter_event_mode(), OK);
             next = component.event_iteration().2;
