@@ -1,9 +1,7 @@
 //! What a call has to return, by the tables of the standards and the list of deviations.
 
 use super::super::harness::Standard;
-use super::super::standard::{
-    Causality, Condition, Deviations, Interface, Kind, State, Table, Variability, Variable,
-};
+use super::super::standard::{Causality, Condition, Deviations, Interface, Kind, State, Table, Variable};
 use super::arguments::{self, Arguments};
 use super::call::Call;
 use super::model::Model;
@@ -201,7 +199,7 @@ impl Oracle<'_> {
             }
             Call::SetClocks { values, .. } if values.contains(&0) => found.push("clock-set-inactive"),
             Call::Status { .. } if model.state == State::Step => found.push("status-without-a-reason"),
-            Call::Partial { unknowns, knowns, .. } => self.partial(unknowns, knowns, &mut found),
+            Call::Partial { knowns, .. } => self.partial(knowns, &mut found),
             _ => {}
         }
         if is_null_for_nothing(call) {
@@ -217,7 +215,7 @@ impl Oracle<'_> {
         if found.is_empty() { Rule::Allowed } else { Rule::Tolerated(found) }
     }
 
-    fn partial(&self, unknowns: &[u32], knowns: &[u32], found: &mut Vec<&'static str>) {
+    fn partial(&self, knowns: &[u32], found: &mut Vec<&'static str>) {
         let is_initialised = self.model.state != State::Initialization;
         let find = |reference: &u32| self.scenario.description.find(*reference);
         let is_parameter = |variable: &Variable| variable.causality == Causality::Parameter;
@@ -226,12 +224,6 @@ impl Oracle<'_> {
             && knowns.iter().filter_map(find).any(is_parameter)
         {
             found.push("derivatives-by-parameters");
-        }
-        let is_discrete = |variable: &Variable| {
-            variable.causality == Causality::Output && variable.variability != Variability::Continuous
-        };
-        if self.model.state == State::Continuous && unknowns.iter().filter_map(find).any(is_discrete) {
-            found.push("derivatives-of-discrete-outputs");
         }
     }
 }

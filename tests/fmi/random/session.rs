@@ -192,6 +192,14 @@ impl Session {
         {
             self.tally.borrow_mut().meet("errors-always-logged");
         }
+        let is_beyond_the_list = match &call {
+            Call::Get { .. } => self.scenario.interface == Interface::CoSimulation,
+            Call::Partial { .. } | Call::GetSlopes { .. } => true,
+            _ => false,
+        };
+        if answer.status == 2 && is_beyond_the_list && self.scenario.description.standard == Standard::Fmi2 {
+            self.tally.borrow_mut().meet("discard-beyond-the-list");
+        }
         self.tally.borrow_mut().count(self, &call, &verdict, &answer, duration);
         if answer.status == 0 {
             self.check_results(&call, &answer)?;
