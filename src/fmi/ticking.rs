@@ -2,7 +2,7 @@
 //!
 //! All three run the same ticks with the same inputs. Without events a tick at t reads the inputs that were set before
 //! the step that starts at or before t. With events a step ends at the tick and the importer enters event mode. There
-//! it is the importer who activates the clock `tick` (FMI 3.0.2, section 2.2.9): after `fmi3SetClock` the
+//! it is the importer who activates the clock `tick` (FMI 3.0.2, section 2.2.8): after `fmi3SetClock` the
 //! `fmi3UpdateDiscreteStates` that follows runs the tick with the inputs of that moment, however many event iterations
 //! went before, and asks for another one, in which the new outputs can be read. An importer that knows no clocks gets a
 //! tick that is still due when it leaves event mode. The outputs follow from the state alone and never, at one instant,

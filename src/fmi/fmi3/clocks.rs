@@ -210,7 +210,7 @@ fn require_clocks(instance: &mut Instance, references: &[u32]) -> Result<(), Cal
     references.iter().try_for_each(|reference| instance.timing(*reference).map(drop))
 }
 
-/// The importer is told the interval \[s\] of `tick`: whether it is news (FMI 3.0.2, section 2.2.9.4).
+/// The importer is told the interval \[s\] of `tick`: whether it is news (FMI 3.0.2, section 2.2.8.4).
 fn tell(instance: &mut Instance, interval: f64) -> fmi3IntervalQualifier {
     let told = core::mem::replace(&mut instance.clocks.told_interval, interval);
     if told == interval { FMI3_INTERVAL_UNCHANGED } else { FMI3_INTERVAL_CHANGED }

@@ -68,10 +68,10 @@ const WRITABLE_DISCRETE: &[Phase] = &[
     ClockActivationMode,
 ];
 const INITIALIZED: &[Phase] = &[EventMode, ContinuousTimeMode, StepMode, ClockActivationMode];
-/// Clocks tick in Event Mode and around their activation only, never in Step Mode (section 2.2.9.2, table of clock
+/// Clocks tick in Event Mode and around their activation only, never in Step Mode (section 2.2.8.2, table of clock
 /// types).
 const CLOCKED: &[Phase] = &[EventMode, ClockUpdateMode];
-/// Of fixed clocks (sections 2.2.9.2 and 2.3.5).
+/// Of fixed clocks (sections 2.2.8.2 and 2.3.5).
 const INTERVAL_READABLE: &[Phase] = &[InitializationMode, EventMode];
 const EVALUABLE: &[Phase] = &[InitializationMode, EventMode, ContinuousTimeMode, Terminated];
 const DIFFERENTIABLE: &[Phase] = &[InitializationMode, EventMode, ContinuousTimeMode, StepMode, Terminated];
@@ -149,7 +149,7 @@ pub const GET_INTERVAL_DECIMAL: Function = Function::new("fmi3GetIntervalDecimal
 pub const GET_INTERVAL_FRACTION: Function = Function::new("fmi3GetIntervalFraction", INTERVAL_READABLE);
 pub const GET_SHIFT_DECIMAL: Function = Function::new("fmi3GetShiftDecimal", &[InitializationMode]);
 pub const GET_SHIFT_FRACTION: Function = Function::new("fmi3GetShiftFraction", &[InitializationMode]);
-/// Of fixed clocks in Initialization Mode only (section 2.2.9.2, table of clock types).
+/// Of fixed clocks in Initialization Mode only (section 2.2.8.2, table of clock types).
 pub const SET_INTERVAL_DECIMAL: Function = Function::new("fmi3SetIntervalDecimal", &[InitializationMode]);
 pub const SET_INTERVAL_FRACTION: Function = Function::new("fmi3SetIntervalFraction", &[InitializationMode]);
 pub const SET_SHIFT_DECIMAL: Function = Function::new("fmi3SetShiftDecimal", &[InitializationMode]);

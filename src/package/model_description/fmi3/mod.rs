@@ -140,7 +140,7 @@ impl TypedVariable {
     /// ticks only.
     ///
     /// The interval of an input clock is what the parameter sample_time starts with. An importer may set either, with the
-    /// same effect (section 2.4.5.1 asks for the attribute, section 2.2.9.2 has the importer set the interval then).
+    /// same effect (section 2.4.5.1 asks for the attribute, section 2.2.8.2 has the importer set the interval then).
     fn clock(
         description: &Description,
         value_reference: usize,
