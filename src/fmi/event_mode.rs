@@ -17,7 +17,8 @@ pub(super) struct EventEnd {
 impl Instance {
     pub(super) fn enter_event_mode(&mut self) -> Result<(), CallError> {
         match self.interface {
-            Interface::ModelExchange | Interface::CoSimulationWithEvents { .. } => {}
+            Interface::ModelExchange => self.require_not_past_stop_time()?,
+            Interface::CoSimulationWithEvents { .. } => {}
             Interface::CoSimulation | Interface::ScheduledExecution => {
                 return Err(CallError::NotOffered("event mode, which the instance was not made for"));
             }

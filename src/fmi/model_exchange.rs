@@ -75,8 +75,15 @@ impl Instance {
     /// The solver accepts where it is. No unit has step events.
     pub(super) fn complete_integrator_step(&mut self) -> Result<(), CallError> {
         self.require_model_exchange()?;
+        self.require_not_past_stop_time()?;
         self.earliest_time.completed_step(self.communication.now());
         Ok(())
+    }
+
+    /// Solvers look past the stop time, since they interpolate back from there; to stay there is an error.
+    pub(super) fn require_not_past_stop_time(&self) -> Result<(), CallError> {
+        let now = self.communication.now();
+        self.communication.require_before_stop_time("time", now, now - self.earliest_time.time)
     }
 
     /// Nothing depends on time but through the inputs.
@@ -87,11 +94,6 @@ impl Instance {
             return Err(CallError::WrongTime { argument: "time", value: time, expected });
         }
         self.earliest_time.check(time)?;
-        self.communication.require_before_stop_time(
-            "time",
-            time,
-            (time - self.communication.now()).max(0.0),
-        )?;
         self.unit.values_mut()[TIME] = time;
         self.communication.move_to(time);
         Ok(())

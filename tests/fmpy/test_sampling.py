@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 from bearing import ESTIMATE, SAMPLE_TIME, bits
 from cosimulation import Fmu
+from fmpy.fmi1 import FMICallException
 from packages import CONTROLLER, fmu_path
 
 DURATION = 100  # s
@@ -152,9 +153,13 @@ def test_ticks_are_multiples_of_the_sample_time_for_any_start(
     assert (controller.get("tick_time"), controller.get("voltage")) == (1.25, -150.0)
 
 
-def test_steps_beyond_the_stop_time_work(fmi_version: int, open_fmu: Callable[[Path], Fmu]) -> None:
+def test_steps_end_at_the_stop_time(fmi_version: int, open_fmu: Callable[[Path], Fmu]) -> None:
+    """ "If the environment tries to compute past stopTime, the FMU has to return Error"; rounding is none."""
     controller = open_fmu(fmu_path(fmi_version, CONTROLLER))
     controller.initialize(stop_time=0.01)
-    for k in range(20):
+    for k in range(9):
         controller.step(k * 1e-3, 1e-3)
-    assert controller.get("tick_time") == 19 * 1e-3
+    with pytest.raises(FMICallException):
+        controller.step(9e-3, 2e-3)
+    controller.step(9e-3, 1e-3 + 1e-12)
+    assert controller.get("tick_time") == 9e-3

@@ -164,6 +164,8 @@ impl Oracle<'_> {
         let model = self.model;
         let mut found = Vec::new();
         let is_stepping = matches!(model.state, State::Step | State::Activation | State::Intermediate);
+        let stays_past_stop =
+            model.state == State::Continuous && model.is_past_stop(model.time, model.time - model.earliest());
         match call {
             Call::Get { references, .. } if is_stepping && model.has_set && !references.is_empty() => {
                 found.push("read-after-set");
@@ -171,7 +173,11 @@ impl Oracle<'_> {
             Call::SetTime(time) if is_clearly_below(*time, model.earliest()) => {
                 return Rule::Forbidden("time goes back");
             }
-            Call::SetTime(time) if model.is_past_stop(*time, (time - model.time).max(0.0)) => {
+            Call::SetTime(time) if model.stop.is_some_and(|stop| *time > stop) => {
+                found.push("solver-past-stop-time");
+            }
+            Call::CompletedStep { .. } if stays_past_stop => return Rule::Forbidden("past the stop time"),
+            Call::Plain(function) if stays_past_stop && function.ends_with("EnterEventMode") => {
                 return Rule::Forbidden("past the stop time");
             }
             Call::Activate { time, .. } if model.is_past_stop(*time, model.sample_time) => {
