@@ -98,6 +98,8 @@ def parse(made: argparse.ArgumentParser) -> argparse.Namespace:
             f"--stop-time {options.stop_time:g} s with --step-size {options.step_size:g} s is {steps:.4g} steps: "
             f"expected 1 to {MOST_STEPS}"
         )
+    # Whole steps: the units compute nothing past the stop time.
+    options.stop_time = round(steps) * options.step_size
     if not options.show:
         pyplot.switch_backend("Agg")
     return options

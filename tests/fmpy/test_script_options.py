@@ -89,6 +89,13 @@ def test_one_step_is_a_run(run: Callable[..., Outcome], script: str, tmp_path: P
     assert os.listdir(tmp_path) == ["one.png"]
 
 
+@pytest.mark.parametrize("script", SCRIPTS)
+def test_a_run_ends_with_a_whole_step(run: Callable[..., Outcome], script: str, tmp_path: Path) -> None:
+    """Guards: a last step beyond the stop time that the units were given, which they refuse."""
+    done = run(script, "--stop-time", "0.0016", "--step-size", "1e-3", "--out", tmp_path / "two.png")
+    assert (done.status, done.message) == (0, "")
+
+
 @pytest.mark.parametrize(("script", "option"), [(script, option) for script in SCRIPTS for option in NUMBERS[script]])
 @pytest.mark.parametrize("value", ["nan", "inf", "much"])
 def test_other_numbers_are_finite(run: Callable[..., Outcome], script: str, option: str, value: str) -> None:
