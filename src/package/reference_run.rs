@@ -203,8 +203,12 @@ impl Bench {
     }
 }
 
-/// Value references of the inputs from which outputs at the end of the initialisation follow.
+/// Value references of the inputs from which outputs at the end of the initialisation follow. In co-simulation those of
+/// a plant follow from its states alone; its echo of the inputs tells of the last step, of which there is none yet.
 fn initial_inputs(description: &'static Description) -> Vec<usize> {
+    if !description.is_sampled() {
+        return Vec::new();
+    }
     let outputs = description.variables.iter().filter(|variable| variable.causality == Causality::Output);
     let sources = outputs.flat_map(|output| output.initially_from).filter_map(|name| description.find(name));
     let inputs = sources.filter(|(_, source)| source.causality == Causality::Input);
