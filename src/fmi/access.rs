@@ -1,6 +1,7 @@
 //! Reading and writing variables by value reference.
 
 use super::floating_point::in_default_environment;
+use super::model_exchange::require_computed;
 use super::{CallError, FmiVersion, Instance, Phase};
 use crate::unit::LARGEST_TABLE;
 use crate::unit::variable::{Causality, Kind, Variability, Variable};
@@ -26,11 +27,10 @@ impl Instance {
     ) -> Result<(), CallError> {
         self.refresh_before_first_step()?;
         self.evaluate();
-        for reference in references {
-            self.find(data_type, *reference)?;
-            self.require_computed(*reference as usize)?;
-        }
         let source = self.unit.values();
+        for reference in references {
+            require_computed(self.find(data_type, *reference)?, source[*reference as usize])?;
+        }
         for (value, reference) in values.iter_mut().zip(references) {
             *value = convert(source[*reference as usize]);
         }
@@ -144,12 +144,28 @@ impl Instance {
             && !self.intermediate_update.is_some_and(|update| update.registered.contains(reference))
     }
 
+    /// Continuous inputs, which importers set most, may always be set between steps.
+    #[inline]
+    fn require_settable(
+        &self,
+        standard: FmiVersion,
+        reference: u32,
+        variable: &Variable,
+    ) -> Result<(), CallError> {
+        let is_continuous_input =
+            variable.causality == Causality::Input && variable.variability == Variability::Continuous;
+        if is_continuous_input && self.phase != Phase::IntermediateUpdateMode {
+            return Ok(());
+        }
+        self.require_settable_now(standard, reference, variable)
+    }
+
     /// Before the first step parameters and inputs may be set, afterwards inputs and tunable parameters. An importer
     /// that integrates the unit may set continuous inputs and states in continuous time, and by FMI 3.0 at an event also
     /// states that do not jump (section 2.3.5; not so FMI 2.0.5, table in section 3.2.3). Within a step registered
     /// continuous inputs may be set, too.
-    #[inline]
-    fn require_settable(
+    #[inline(never)]
+    fn require_settable_now(
         &self,
         standard: FmiVersion,
         reference: u32,

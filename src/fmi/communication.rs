@@ -86,6 +86,9 @@ impl CommunicationPoint {
         time: f64,
         step: f64,
     ) -> Result<(), CallError> {
+        if time <= self.stop_time {
+            return Ok(());
+        }
         let excess = time - self.stop_time;
         if excess <= TOLERANCE * step + ROUNDING * time.abs() {
             Ok(())

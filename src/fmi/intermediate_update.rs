@@ -90,7 +90,9 @@ impl Instance {
         let duration = self.communication.duration(point, step_size)?;
         let unit = sampled(&mut *self.unit)?;
         // Refuses what `Unit::advance` would refuse; the ticks are counted one by one below.
-        let (final_clock, _) = unit.affordable_ticks(duration)?;
+        unit.require_acceptable_step(duration)?;
+        let mut final_clock = *unit.clock();
+        final_clock.advance(duration);
         if unit.clock().until_tick_within(duration) == Some(0.0) {
             let time = unit.clock_mut().take();
             unit.tick(time, &mut self.logger);

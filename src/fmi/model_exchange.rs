@@ -6,6 +6,7 @@ use super::event_mode::EventEnd;
 use super::{CallError, Instance, Interface, Phase};
 use crate::unit::continuous::nominal;
 use crate::unit::value::{ValueError, is_finite};
+use crate::unit::variable::Variable;
 use crate::unit::{ContinuousUnit, TIME};
 
 /// How far time may go back: not beyond the last event, nor beyond the completed step before the last one (FMI 2.0.5,
@@ -154,23 +155,24 @@ impl Instance {
         require_count(argument, target.len(), rows.len())?;
         self.refresh_before_first_step()?;
         self.evaluate();
-        rows.iter().try_for_each(|row| self.require_computed(*row))?;
+        let source = self.unit.values();
+        for row in rows {
+            require_computed(&self.variables[*row], source[*row])?;
+        }
         for (target, row) in target.iter_mut().zip(rows) {
-            *target = self.unit.values()[*row];
+            *target = source[*row];
         }
         Ok(())
     }
+}
 
-    /// Refuses a value that overflowed.
-    #[inline]
-    pub(super) fn require_computed(&self, row: usize) -> Result<(), CallError> {
-        let value = self.unit.values()[row];
-        if is_finite(value) {
-            return Ok(());
-        }
-        let variable = &self.variables[row];
-        Err(CallError::NotComputable { name: variable.name, value, unit: variable.unit() })
+/// Refuses a value that overflowed.
+#[inline]
+pub(super) fn require_computed(variable: &Variable, value: f64) -> Result<(), CallError> {
+    if is_finite(value) {
+        return Ok(());
     }
+    Err(CallError::NotComputable { name: variable.name, value, unit: variable.unit() })
 }
 
 fn require_count(argument: &'static str, got: usize, expected: usize) -> Result<(), CallError> {

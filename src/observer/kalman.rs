@@ -219,8 +219,7 @@ impl Filter {
     /// One step linearised at the flux `reference`.
     fn predict_along(&mut self, settings: &KalmanSettings, voltage: f64, reference: f64) {
         let KalmanSettings { bearing, map, sample_time, .. } = *settings;
-        let effect = bearing.force_effect(map, reference, voltage, sample_time);
-        let slope = bearing.force_effect_slope(map, reference, voltage, sample_time);
+        let (effect, slope) = bearing.linearised_force_effect(map, reference, voltage, sample_time);
         let offset = self.state.flux - reference;
         let effect = combine([effect, slope, slope], [1.0, offset, 0.0]);
         self.step(settings, voltage, effect, slope);

@@ -91,8 +91,7 @@ impl<'a> Window<'a> {
         let oldest = self.positions[0];
         let targets = rest.iter_mut().zip(sensitivity.iter_mut()).skip(1);
         for ((measured, voltage), target) in self.positions[1..].iter().zip(self.voltages).zip(targets) {
-            let effect = bearing.force_effect(map, flux, *voltage, t);
-            let slope = bearing.force_effect_slope(map, flux, *voltage, t);
+            let (effect, slope) = bearing.linearised_force_effect(map, flux, *voltage, t);
             position += t * velocity + effect.position;
             velocity += effect.velocity;
             position_slope += t * velocity_slope + slope.position;

@@ -129,17 +129,10 @@ impl Linearisation {
     fn at(settings: &NewtonSettings, flux: f64, voltages: [f64; 2]) -> Self {
         let NewtonSettings { bearing, map, sample_time, .. } = *settings;
         let middle_flux = flux + voltages[0] * sample_time;
-        Self {
-            middle_flux,
-            effects: [
-                bearing.force_effect(map, flux, voltages[0], sample_time),
-                bearing.force_effect(map, middle_flux, voltages[1], sample_time),
-            ],
-            slopes: [
-                bearing.force_effect_slope(map, flux, voltages[0], sample_time),
-                bearing.force_effect_slope(map, middle_flux, voltages[1], sample_time),
-            ],
-        }
+        let (first, first_slope) = bearing.linearised_force_effect(map, flux, voltages[0], sample_time);
+        let (second, second_slope) =
+            bearing.linearised_force_effect(map, middle_flux, voltages[1], sample_time);
+        Self { middle_flux, effects: [first, second], slopes: [first_slope, second_slope] }
     }
 
     /// Effects once the flux has moved by a small `correction`.

@@ -112,9 +112,12 @@ pub fn advance<const N: usize>(
     duration: f64,
     longest_substep: f64,
 ) {
-    // The cast saturates; a share of 1e-9 keeps a rounded quotient from costing a sub-step.
-    let substeps = (libm::ceil(duration / longest_substep * (1.0 - 1e-9)) as u64).max(1);
-    let substep = duration / substeps as f64;
+    let (mut substeps, mut substep) = (1, duration);
+    if duration > longest_substep {
+        // The cast saturates; a share of 1e-9 keeps a rounded quotient from costing a sub-step.
+        substeps = (libm::ceil(duration / longest_substep * (1.0 - 1e-9)) as u64).max(1);
+        substep = duration / substeps as f64;
+    }
     *contact = transition(system, state, *contact);
     let mut located = 0;
     for _ in 0..substeps {

@@ -119,14 +119,9 @@ impl LevitatedBall {
         *state = State { position, velocity, flux };
     }
 
-    /// Sub-steps per second, the reciprocal of [`Self::longest_substep`] but for rounding.
-    #[inline]
-    pub fn substeps_per_second(&self, lower_stop: f64) -> f64 {
-        (self.resistance * (self.gap - lower_stop) / (0.05 * self.inductance_constant)).max(1e4)
-    }
-
     /// 0.1 ms, or a twentieth of the coil's shortest time constant k / (R (c - y)) if that is less \[s\]. The error of a step is
     /// then below 5e-12 of the distance of the flux from its steady value.
+    #[inline]
     pub fn longest_substep(&self, lower_stop: f64) -> f64 {
         (0.05 * self.inductance_constant / (self.resistance * (self.gap - lower_stop))).min(1e-4)
     }

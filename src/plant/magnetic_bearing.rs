@@ -141,7 +141,36 @@ impl MagneticBearing {
         if map == Map::Exact && flux * flux_after < 0.0 {
             return self.slope_across_zero(flux.abs(), flux_after.abs(), voltage, duration);
         }
+        self.slope_with_sign(flux_sign(map, flux, voltage), flux, voltage, duration)
+    }
+
+    /// [`Self::force_effect`] and [`Self::force_effect_slope`] at once.
+    #[inline(always)]
+    pub fn linearised_force_effect(
+        &self,
+        map: Map,
+        flux: f64,
+        voltage: f64,
+        duration: f64,
+    ) -> (ForceEffect, ForceEffect) {
+        let flux_after = flux + voltage * duration;
+        if map == Map::Exact && flux * flux_after < 0.0 {
+            return (
+                self.effect_across_zero(flux, voltage, duration),
+                self.slope_across_zero(flux.abs(), flux_after.abs(), voltage, duration),
+            );
+        }
         let sign = flux_sign(map, flux, voltage);
+        (
+            self.effect_with_sign(sign, flux, voltage, duration),
+            self.slope_with_sign(sign, flux, voltage, duration),
+        )
+    }
+
+    /// Slope while the flux keeps its `sign`.
+    #[inline(always)]
+    fn slope_with_sign(&self, sign: f64, flux: f64, voltage: f64, duration: f64) -> ForceEffect {
+        let flux_after = flux + voltage * duration;
         ForceEffect {
             velocity: duration * (self.epsilon + sign * (flux + flux_after)),
             position: duration
@@ -236,6 +265,19 @@ mod tests {
                 bearing.force_effect(Map::Exact, flux, voltage, 1e-3),
                 bearing.force_effect(Map::Printed, flux, voltage, 1e-3)
             );
+        }
+
+        #[test]
+        fn effect_and_slope_at_once_are_the_same(
+            flux in -0.2..0.2f64, voltage in -150.0..150.0f64, epsilon in 0.0..1.0f64, no_flux: bool,
+        ) {
+            let bearing = MagneticBearing { epsilon };
+            let flux = if no_flux { 0.0 } else { flux };
+            for map in [Map::Exact, Map::Printed] {
+                let (effect, slope) = bearing.linearised_force_effect(map, flux, voltage, 1e-3);
+                prop_assert_eq!(effect, bearing.force_effect(map, flux, voltage, 1e-3));
+                prop_assert_eq!(slope, bearing.force_effect_slope(map, flux, voltage, 1e-3));
+            }
         }
 
         #[test]

@@ -23,12 +23,20 @@ pub struct BallReferenceFilter {
     stages: [f64; 3],
     /// r at the last sample \[m\].
     input: f64,
+    /// q = w T and e^-q of the last update, which the next one most likely needs again.
+    exponent: f64,
+    decay: f64,
 }
 
 impl BallReferenceFilter {
     /// A filter at rest at `position` \[m\].
     pub fn new(position: f64) -> Self {
-        Self { stages: [position; 3], input: position }
+        Self { stages: [position; 3], input: position, exponent: 0.0, decay: 1.0 }
+    }
+
+    /// Whether its parts belong together; false for bytes that no filter ever wrote.
+    pub fn is_consistent(&self) -> bool {
+        self.decay == libm::exp(-self.exponent)
     }
 
     /// Takes the present sample of r \[m\] without letting time pass: what a jump at the start is.
@@ -44,7 +52,10 @@ impl BallReferenceFilter {
     pub fn update(&mut self, input: f64, rate: f64, sample_time: f64) {
         let q = rate * sample_time;
         let lag = (input - self.input) / q;
-        let decay = libm::exp(-q);
+        if q != self.exponent {
+            (self.exponent, self.decay) = (q, libm::exp(-q));
+        }
+        let decay = self.decay;
         let past = self.input;
         let [first, second, third] = self.stages;
         let (first, second, third) =
@@ -88,6 +99,19 @@ mod tests {
             assert!((output.velocity / RATE - decay * q * q / 2.0).abs() < 1e-13);
             assert!((output.acceleration / RATE.powi(2) - decay * (q - q * q / 2.0)).abs() < 1e-13);
             assert!((output.jerk / RATE.powi(3) - decay * (1.0 - 2.0 * q + q * q / 2.0)).abs() < 1e-13);
+        }
+    }
+
+    #[test]
+    fn another_rate_counts_from_the_next_sample() {
+        let mut changing = BallReferenceFilter::new(0.0);
+        for rate in [RATE, RATE, 3.0 * RATE, RATE] {
+            let mut fresh = BallReferenceFilter::new(0.0);
+            (fresh.stages, fresh.input) = (changing.stages, changing.input);
+            changing.update(1.0, rate, 1e-3);
+            fresh.update(1.0, rate, 1e-3);
+            assert_eq!(changing, fresh);
+            assert!(changing.is_consistent());
         }
     }
 

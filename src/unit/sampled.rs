@@ -1,12 +1,15 @@
 //! Units that act at the ticks of a clock: what it takes to leave the ticks to somebody else.
 
+use super::longest_step::check_step;
 use super::sample_clock::SampleClock;
-use super::work::{LARGEST_WORK, require_affordable};
+use super::work::{LARGEST_WORK, Load, require_affordable};
 use super::{Description, Journal, UnitError};
-use core::ops::Range;
 
-/// Ticks that any step may have, so that short steps need not be judged: less than [`LARGEST_WORK`] whatever the observer.
-const ALWAYS_AFFORDABLE: i64 = 5;
+/// Intervals of a clock that any step may span, so that short steps need not be judged.
+const ALWAYS_AFFORDABLE: f64 = 4.0;
+
+/// Cost of a tick \[s\] with which those and one more are a step's [`LARGEST_WORK`]; no observer is dearer.
+const LARGEST_COST: f64 = LARGEST_WORK / (ALWAYS_AFFORDABLE + 1.0);
 
 /// A unit whose ticks may be had one by one; [`super::Unit::advance`] runs them by itself.
 ///
@@ -20,19 +23,21 @@ pub trait SampledUnit {
     /// Reads the inputs and sets the outputs as at `time` \[s\]. The caller keeps the clock.
     fn tick(&mut self, time: f64, journal: &mut dyn Journal);
 
+    /// Longest step that is accepted \[s\], see [`super::longest_step`].
+    fn longest_step(&self) -> f64;
+
     /// What a tick costs at most with the present parameters \[s\], see [`super::work`].
     fn cost_of_tick(&self) -> f64;
 
-    /// The clock after `duration` \[s\], and the numbers of the ticks until then; refused if they would take too long.
+    /// Refuses a step over `duration` \[s\] that the loop would not bear or that would compute for too long.
     #[inline]
-    fn affordable_ticks(&self, duration: f64) -> Result<(SampleClock, Range<i64>), UnitError> {
-        let mut clock = *self.clock();
-        let ticks = clock.advance(duration);
-        if ticks.end.saturating_sub(ticks.start) > ALWAYS_AFFORDABLE {
-            let cost = self.cost_of_tick().min(LARGEST_WORK / ALWAYS_AFFORDABLE as f64);
-            require_affordable(duration, cost / clock.period())?;
+    fn require_acceptable_step(&self, duration: f64) -> Result<(), UnitError> {
+        let interval = self.clock().period();
+        if duration > ALWAYS_AFFORDABLE * interval {
+            let cost = self.cost_of_tick().min(LARGEST_COST);
+            require_affordable(duration, [Load { cost, interval }])?;
         }
-        Ok((clock, ticks))
+        check_step(duration, self.longest_step())
     }
 }
 

@@ -10,6 +10,7 @@ use super::continuous::Solver;
 use super::quantity::DURATION;
 use super::sample_clock::SampleClock;
 use super::variable::{Kind, Variable};
+use super::work::Load;
 use crate::signal::GaussianNoise;
 use serde::{Deserialize, Serialize};
 
@@ -45,16 +46,6 @@ pub(super) fn check_sample_time(value: f64) -> Result<(), UnitError> {
 #[derive(Clone, Serialize, Deserialize)]
 pub(super) struct Sensor {
     noise: GaussianNoise,
-    clock: Option<SampleClock>,
-}
-
-/// The readings within a step.
-pub(super) struct Readings {
-    /// Time from the step's begin to the last one \[s\], none without a reading. Only it can be seen after the step.
-    pub last: Option<f64>,
-    /// Readings before it.
-    skipped: i64,
-    /// The clock at the step's end.
     clock: Option<SampleClock>,
 }
 
@@ -94,42 +85,55 @@ impl Sensor {
         }
     }
 
-    /// Computing for readings per second of the unit's time.
+    /// Work of its readings.
     #[inline]
-    pub(super) fn load(&self) -> f64 {
-        self.clock.map_or(0.0, |clock| COST_OF_READING / clock.period())
+    pub(super) fn load(&self) -> Load {
+        match &self.clock {
+            Some(clock) => Load { cost: COST_OF_READING, interval: clock.period() },
+            None => Load::NONE,
+        }
     }
 
-    /// When it is to be read in a step over `duration` \[s\]: at its end, or at the multiples of the sample time in it,
-    /// its end included.
+    /// Moves a plant through a step over `duration` \[s\]: up to the last reading in it, the only one that can be seen after
+    /// the step, and from there to its end. Readings lie at the end, or at the multiples of the sample time, the end
+    /// included. Returns the states at the end and at that reading, none without one.
+    ///
+    /// `moved` gives what becomes of a state from a time since the step's begin on, in a time, both in s.
     #[inline]
-    pub(super) fn readings_within(&self, duration: f64) -> Readings {
-        let Some(begin) = self.clock else {
-            return Readings { last: Some(duration), skipped: 0, clock: None };
+    pub(super) fn move_through<S: Copy>(
+        &self,
+        start: S,
+        duration: f64,
+        mut moved: impl FnMut(S, f64, f64) -> Result<S, UnitError>,
+    ) -> Result<(S, Option<S>), UnitError> {
+        let last_reading = match &self.clock {
+            None => Some(duration),
+            Some(clock) => last_tick_through(clock, duration),
         };
-        let mut end = begin;
-        let ticks = end.advance_through(duration);
-        if ticks.is_empty() {
-            return Readings { last: None, skipped: 0, clock: Some(end) };
+        let (mut begin, mut end) = (0.0, last_reading.unwrap_or(duration));
+        let (mut state, mut before_end) = (start, None);
+        // A loop, so that one place moves the plant, into which that is compiled.
+        loop {
+            state = moved(state, begin, end - begin)?;
+            if end >= duration {
+                break;
+            }
+            before_end = Some(state);
+            (begin, end) = (end, duration);
         }
-        // What lies at the end but for rounding is at the end.
-        let last =
-            if end.has_just_ticked() { duration } else { begin.until(ticks.end - 1).clamp(0.0, duration) };
-        Readings {
-            last: Some(last),
-            skipped: ticks.end.saturating_sub(ticks.start).saturating_sub(1),
-            clock: Some(end),
-        }
+        Ok((state, before_end.or(last_reading.map(|_| state))))
     }
 
     /// Goes through the readings of a step up to the last one, which is still to be read.
     #[inline]
-    pub(super) fn skip_to_last(&mut self, readings: &Readings, deviation: f64) {
-        self.clock = readings.clock;
-        // So that the noise of a reading does not depend on how the time was cut into steps.
-        if deviation != 0.0 {
-            for _ in 0..readings.skipped {
-                self.noise.sample();
+    pub(super) fn skip_to_last(&mut self, duration: f64, deviation: f64) {
+        if let Some(clock) = &mut self.clock {
+            let readings = clock.advance_through(duration);
+            // So that the noise of a reading does not depend on how the time was cut into steps.
+            if deviation != 0.0 {
+                for _ in 1..readings.end.saturating_sub(readings.start) {
+                    self.noise.sample();
+                }
             }
         }
     }
@@ -151,4 +155,16 @@ impl Sensor {
             None => sample_time == 0.0,
         }
     }
+}
+
+#[inline(never)]
+fn last_tick_through(begin: &SampleClock, duration: f64) -> Option<f64> {
+    let mut end = *begin;
+    let ticks = end.advance_through(duration);
+    if ticks.is_empty() {
+        return None;
+    }
+    // What lies at the end but for rounding is at the end.
+    let is_at_end = end.has_just_ticked();
+    Some(if is_at_end { duration } else { begin.until(ticks.end - 1).clamp(0.0, duration) })
 }

@@ -39,44 +39,47 @@ pub fn is_finite(value: f64) -> bool {
     value.to_bits() & EXPONENT != EXPONENT
 }
 
-/// Whether `value` lies in the range, by the bits.
+/// Whether `value` lies in the range, of whose bounds none is a negative zero, by the bits.
 #[inline]
 fn is_within(value: f64, (minimum, maximum): (f64, f64)) -> bool {
-    let value = order(value.to_bits());
+    const NEGATIVE_ZERO: u64 = 1 << 63;
+    let bits = value.to_bits();
+    let value = order(if bits == NEGATIVE_ZERO { 0 } else { bits });
     order(minimum.to_bits()) <= value && value <= order(maximum.to_bits())
 }
 
-/// Integers in the order of the finite numbers with these bits; the two zeros are one.
+/// Integers in the order of the numbers with these bits; a negative zero comes before the other one.
 #[inline]
 fn order(bits: u64) -> i64 {
-    const NEGATIVE_ZERO: i64 = -1;
     let bits = bits as i64;
-    let order = bits ^ (((bits >> 63) as u64) >> 1) as i64;
-    if order == NEGATIVE_ZERO { 0 } else { order }
+    bits ^ (((bits >> 63) as u64) >> 1) as i64
 }
 
 impl Variable {
     /// Whether `value` fits the variable's kind and range.
     #[inline]
     pub fn check(&self, value: f64) -> Result<(), ValueError> {
-        let (minimum, maximum) = self.range;
-        let name = self.name;
+        if is_finite(value) && is_within(value, self.range) && !matches!(self.kind, Kind::Enumeration(_)) {
+            return Ok(());
+        }
+        self.check_item_or_refuse(value)
+    }
+
+    /// Whether `value` is an item of the variable's enumeration; if it has none, why the value does not fit.
+    #[inline(never)]
+    fn check_item_or_refuse(&self, value: f64) -> Result<(), ValueError> {
+        let (name, (minimum, maximum)) = (self.name, self.range);
         if !is_finite(value) {
             return Err(ValueError::NotFinite { name, value, unit: self.unit() });
         }
-        if let Kind::Enumeration(enumeration) = self.kind {
-            let count = enumeration.items.len();
-            let is_item = value.fract() == 0.0 && value >= 1.0 && value <= count as f64;
-            return if is_item {
-                Ok(())
-            } else {
-                Err(ValueError::NoItem { name, value, enumeration: enumeration.name, count })
-            };
-        }
-        if !is_within(value, self.range) {
+        let Kind::Enumeration(enumeration) = self.kind else {
             return Err(ValueError::OutOfRange { name, value, unit: self.unit(), minimum, maximum });
+        };
+        let count = enumeration.items.len();
+        if value.fract() == 0.0 && value >= 1.0 && value <= count as f64 {
+            return Ok(());
         }
-        Ok(())
+        Err(ValueError::NoItem { name, value, enumeration: enumeration.name, count })
     }
 }
 
@@ -95,7 +98,8 @@ mod tests {
             assert!(is_finite(value));
             for (minimum, maximum) in numbers.iter().flat_map(|a| numbers.map(|b| (*a, b))) {
                 let expected = value >= minimum && value <= maximum;
-                assert_eq!(is_within(value, (minimum, maximum)), expected, "{minimum} {value} {maximum}");
+                let row = Variable::parameter("length", Kind::Real(&DURATION), 0.0).range(minimum, maximum);
+                assert_eq!(row.check(value).is_ok(), expected, "{minimum} {value} {maximum}");
             }
         }
         assert!(![f64::NAN, -f64::NAN, f64::INFINITY, f64::NEG_INFINITY].into_iter().any(is_finite));

@@ -157,7 +157,8 @@ impl Variable {
     }
 
     pub const fn range(mut self, minimum: f64, maximum: f64) -> Self {
-        self.range = (minimum, maximum);
+        // What is added makes a negative zero a positive one, which bounds are compared as.
+        self.range = (minimum + 0.0, maximum + 0.0);
         self
     }
 

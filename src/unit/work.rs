@@ -10,14 +10,33 @@ use super::UnitError;
 /// Computing in one step, by the units' own account \[s\].
 pub const LARGEST_WORK: f64 = 1.0;
 
-/// Refuses a step over `duration` \[s\] of a unit that computes `load` seconds per second of its own time, if that would
-/// take too long.
+/// Work that comes again and again.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Load {
+    /// Computing each time \[s\].
+    pub cost: f64,
+    /// The unit's own time from one time to the next \[s\].
+    pub interval: f64,
+}
+
+impl Load {
+    pub const NONE: Self = Self { cost: 0.0, interval: 1.0 };
+}
+
+/// Refuses a step over `duration` \[s\] of a unit with this work, if that would take too long.
 #[inline]
-pub fn require_affordable(duration: f64, load: f64) -> Result<(), UnitError> {
+pub fn require_affordable<const N: usize>(duration: f64, loads: [Load; N]) -> Result<(), UnitError> {
     // Far from the limit without a division.
-    if duration * load < 0.5 * LARGEST_WORK {
+    let share = 0.5 * LARGEST_WORK / N as f64;
+    if loads.iter().all(|load| duration * load.cost < share * load.interval) {
         return Ok(());
     }
+    require_affordable_in_total(duration, loads.iter().map(|load| load.cost / load.interval).sum())
+}
+
+/// As [`require_affordable`] for a unit that computes `load` seconds per second of its own time.
+#[cold]
+fn require_affordable_in_total(duration: f64, load: f64) -> Result<(), UnitError> {
     let limit = rounded_down(LARGEST_WORK / load);
     if duration <= limit { Ok(()) } else { Err(UnitError::StepTooLong { duration, limit }) }
 }
@@ -37,15 +56,24 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_limit_that_is_named_is_accepted_and_short(load in -15.0..15.0f64, beyond in 1e-9..1e9f64) {
-            let load = libm::pow(10.0, load);
-            let named = require_affordable(1e300, load).unwrap_err();
+        fn the_limit_that_is_named_is_accepted_and_short(
+            cost in -12.0..3.0f64, interval in -6.0..9.0f64, beyond in 1e-9..1e9f64, other in 0.0..2.0f64,
+        ) {
+            let load = Load { cost: libm::pow(10.0, cost), interval: libm::pow(10.0, interval) };
+            let loads = [load, Load { cost: other * load.cost, ..load }];
+            let named = require_affordable(1e300, loads).unwrap_err();
             let UnitError::StepTooLong { limit, .. } = named else { unreachable!() };
-            prop_assert!(limit * load <= 1.0 + 1e-9 && limit * load > 0.9, "{} {}", limit, load);
-            prop_assert_eq!(require_affordable(limit, load), Ok(()));
+            let work = limit * load.cost / load.interval * (1.0 + other);
+            prop_assert!(work <= 1.0 + 1e-9 && work > 0.9, "{} {}", limit, work);
+            prop_assert_eq!(require_affordable(limit, loads), Ok(()));
             let duration = limit * (1.0 + beyond);
-            prop_assert_eq!(require_affordable(duration, load), Err(UnitError::StepTooLong { duration, limit }));
+            prop_assert_eq!(require_affordable(duration, loads), Err(UnitError::StepTooLong { duration, limit }));
             prop_assert!(format!("{limit:e}").len() <= "1.2e-15".len(), "{:e}", limit);
         }
+    }
+
+    #[test]
+    fn what_costs_nothing_is_never_refused() {
+        assert_eq!(require_affordable(1e300, [Load::NONE; 2]), Ok(()));
     }
 }

@@ -1,7 +1,9 @@
 //! Steps that would compute for more than about a second are refused before they begin, with what would be accepted.
 
+use core::ffi::c_void;
 use std::time::{Duration, Instant};
 
+use maglev_fmu::fmi::fmi3::types::fmi3Boolean;
 use maglev_fmu::unit::UNITS;
 
 use super::harness::clocked::{Choices, sampled_units};
@@ -123,5 +125,35 @@ fn a_step_that_ends_at_the_next_tick_may_be_as_long_as_it_likes() {
         assert_eq!(component.enter_step_mode(), OK);
         assert_ne!(component.step_to_event(0.0, 1e12).status, OK);
         assert_eq!(component.get("time"), 0.0);
+    }
+}
+
+/// Goes on with the step.
+unsafe extern "C-unwind" fn callback(
+    _: *mut c_void,
+    _: f64,
+    _: fmi3Boolean,
+    _: fmi3Boolean,
+    _: fmi3Boolean,
+    _: fmi3Boolean,
+    _: *mut fmi3Boolean,
+    _: *mut f64,
+) {
+}
+
+#[test]
+fn steps_beyond_longest_step_are_refused_with_callbacks_and_without() {
+    for unit in sampled_units() {
+        for intermediate_update in [None, Some(callback as _)] {
+            let component =
+                Component::co_simulation(unit, Choices { intermediate_update, ..Choices::default() });
+            assert_eq!(component.set("longest_step", 1e-3), OK);
+            component.initialise(0.0);
+            component.recorder.clear();
+            let said = ["a step of 0.002 s: expected at most longest_step = 0.001 s"];
+            component.assert_refused(component.step(0.0, 2e-3), &said);
+            assert_eq!(component.get("time"), 0.0);
+            assert_eq!(component.step(0.0, 1e-3), OK, "{unit}");
+        }
     }
 }

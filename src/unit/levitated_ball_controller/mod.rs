@@ -7,7 +7,6 @@ use parameters::{check_prefilters, initial_estimate, law, observer_settings};
 pub use table::DESCRIPTION;
 use table::*;
 
-use super::longest_step::check_step;
 use super::sample_clock::SampleClock;
 use super::sampled::SampledUnit;
 use super::start_delay::StartDelay;
@@ -165,11 +164,9 @@ impl Unit for LevitatedBallController {
     }
 
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError> {
-        let (clock, ticks) = self.affordable_ticks(duration)?;
-        check_step(duration, self.values[LONGEST_STEP])?;
-        self.clock = clock;
-        for k in ticks {
-            self.tick_at(clock.time_of(k), journal);
+        self.require_acceptable_step(duration)?;
+        for k in self.clock.advance(duration) {
+            self.tick_at(self.clock.time_of(k), journal);
         }
         Ok(())
     }
@@ -181,6 +178,7 @@ impl Unit for LevitatedBallController {
     fn is_consistent(&self) -> bool {
         self.clock.may_stand_where_it_does(self.values[SAMPLE_TIME])
             && self.observer.belongs_to(&observer_settings(&self.values))
+            && self.reference.is_consistent()
     }
 }
 
@@ -195,6 +193,10 @@ impl SampledUnit for LevitatedBallController {
 
     fn tick(&mut self, time: f64, journal: &mut dyn Journal) {
         self.tick_at(time, journal);
+    }
+
+    fn longest_step(&self) -> f64 {
+        self.values[LONGEST_STEP]
     }
 
     fn cost_of_tick(&self) -> f64 {

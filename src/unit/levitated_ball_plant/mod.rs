@@ -8,7 +8,7 @@ use table::*;
 
 use super::input_ramp::end_of_ramp;
 use super::sensor::{Sensor, check_sample_time};
-use super::work::require_affordable;
+use super::work::{Load, require_affordable};
 use super::{ContinuousUnit, Description, Journal, Solver, Topic, Unit, UnitError, start_values};
 use crate::plant::end_stops::{Contact, rate_in_contact, transition};
 use crate::plant::levitated_ball::{Drive, DrivenBall, LevitatedBall, State};
@@ -133,26 +133,22 @@ impl Unit for LevitatedBallPlant {
 
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError> {
         let (values, slope) = (&self.values, self.slope);
-        let substeps = self.ball.substeps_per_second(values[LOWER_STOP]);
-        require_affordable(duration, COST_OF_SUBSTEP * substeps + self.sensor.load())?;
+        let substep = self.ball.longest_substep(values[LOWER_STOP]);
+        require_affordable(
+            duration,
+            [Load { cost: COST_OF_SUBSTEP, interval: substep }, self.sensor.load()],
+        )?;
         let begin = Drive { voltage: values[VOLTAGE_INPUT], force: values[FORCE_INPUT] };
         let end = Drive {
             voltage: end_of_ramp(&VARIABLES[VOLTAGE_INPUT], begin.voltage, slope.voltage, duration)?,
             force: end_of_ramp(&VARIABLES[FORCE_INPUT], begin.force, slope.force, duration)?,
         };
-        let readings = self.sensor.readings_within(duration);
         let [position, velocity, flux] = self.state();
-        let mut motion = (State { position, velocity, flux }, self.contact);
-        let (mut passed, mut sensed) = (0.0, None);
-        if let Some(last) = readings.last {
-            motion = self.moved(motion, begin, last)?;
-            sensed = Some(self.ball.current(motion.0.position, motion.0.flux));
-            passed = last;
-        }
-        if passed < duration {
-            motion = self.moved(motion, begin.after(slope, passed), duration - passed)?;
-        }
-        let (state, contact) = motion;
+        let motion = (State { position, velocity, flux }, self.contact);
+        let ((state, contact), sensed) =
+            self.sensor.move_through(motion, duration, |motion, time, duration| {
+                self.moved(motion, begin.after(slope, time), duration)
+            })?;
         if contact != self.contact && journal.wants(Topic::Events) {
             note_contact(contact, journal);
         }
@@ -161,9 +157,9 @@ impl Unit for LevitatedBallPlant {
         self.values[FORCE_INPUT] = end.force;
         self.values[VOLTAGE_MEASURED] = begin.voltage + 0.5 * slope.voltage * duration;
         self.evaluate();
-        self.sensor.skip_to_last(&readings, self.values[SENSOR_NOISE]);
-        if let Some(current) = sensed {
-            self.read_sensor(current);
+        self.sensor.skip_to_last(duration, self.values[SENSOR_NOISE]);
+        if let Some((State { position, flux, .. }, _)) = sensed {
+            self.read_sensor(self.ball.current(position, flux));
         }
         Ok(())
     }

@@ -8,7 +8,7 @@ use table::*;
 
 use super::input_ramp::end_of_ramp;
 use super::sensor::{Sensor, check_sample_time};
-use super::work::require_affordable;
+use super::work::{Load, require_affordable};
 use super::{ContinuousUnit, Description, Journal, Solver, Topic, Unit, UnitError, start_values};
 use crate::controller::saturate_between;
 use crate::plant::end_stops::{Contact, rate_in_contact, transition};
@@ -18,8 +18,8 @@ use crate::signal::quantise;
 use serde::{Deserialize, Serialize};
 use serde_big_array::BigArray;
 
-/// What a second costs \[s\], see [`super::work`].
-const LOAD: f64 = 200e-9 / LONGEST_SUBSTEP;
+/// Integrating, see [`super::work`].
+const LOAD: Load = Load { cost: 200e-9, interval: LONGEST_SUBSTEP };
 
 /// The plant as a unit.
 #[derive(Clone, Serialize, Deserialize)]
@@ -191,25 +191,18 @@ impl Unit for MaglevRigPlant {
     }
 
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError> {
-        require_affordable(duration, LOAD + self.sensor.load())?;
+        require_affordable(duration, [LOAD, self.sensor.load()])?;
         let (voltage, force) = (self.values[VOLTAGE_INPUT], self.values[FORCE]);
         let (voltage_slope, force_slope) = (self.voltage_slope, self.force_slope);
         let voltage_end = end_of_ramp(&VARIABLES[VOLTAGE_INPUT], voltage, voltage_slope, duration)?;
         let force_end = end_of_ramp(&VARIABLES[FORCE], force, force_slope, duration)?;
-        let readings = self.sensor.readings_within(duration);
         let [position, velocity] = self.state();
-        let mut motion = (State { position, velocity }, self.contact);
-        let (mut passed, mut sensed) = (0.0, None);
-        if let Some(last) = readings.last {
-            motion = self.moved(motion, (voltage, force), last)?;
-            sensed = Some(self.sensor_voltage(motion.0.position));
-            passed = last;
-        }
-        if passed < duration {
-            let inputs = (voltage + voltage_slope * passed, force + force_slope * passed);
-            motion = self.moved(motion, inputs, duration - passed)?;
-        }
-        let (state, contact) = motion;
+        let motion = (State { position, velocity }, self.contact);
+        let ((state, contact), sensed) =
+            self.sensor.move_through(motion, duration, |motion, begin, duration| {
+                let inputs = (voltage + voltage_slope * begin, force + force_slope * begin);
+                self.moved(motion, inputs, duration)
+            })?;
         if contact != self.contact && journal.wants(Topic::Events) {
             note_contact(self.values[TIME] + duration, contact, journal);
         }
@@ -222,9 +215,9 @@ impl Unit for MaglevRigPlant {
         self.values[FORCE] = force_end;
         self.set_state([state.position, state.velocity], contact);
         self.evaluate();
-        self.sensor.skip_to_last(&readings, self.values[SENSOR_NOISE]);
-        if let Some(voltage) = sensed {
-            self.read_sensor(voltage);
+        self.sensor.skip_to_last(duration, self.values[SENSOR_NOISE]);
+        if let Some((State { position, .. }, _)) = sensed {
+            self.read_sensor(self.sensor_voltage(position));
         }
         Ok(())
     }

@@ -232,20 +232,13 @@ impl Unit for MagneticBearingPlant {
     }
 
     fn advance(&mut self, duration: f64, _: &mut dyn Journal) -> Result<(), UnitError> {
-        require_affordable(duration, self.sensor.load())?;
+        require_affordable(duration, [self.sensor.load()])?;
         let (voltage, slope) = (self.values[VOLTAGE_INPUT], self.voltage_slope);
         let end = end_of_ramp(&VARIABLES[VOLTAGE_INPUT], voltage, slope, duration)?;
-        let readings = self.sensor.readings_within(duration);
-        let mut state = self.state();
-        let (mut passed, mut sensed) = (0.0, None);
-        if let Some(last) = readings.last {
-            state = self.moved(state, voltage, last)?;
-            sensed = Some(state.position);
-            passed = last;
-        }
-        if passed < duration {
-            state = self.moved(state, voltage + slope * passed, duration - passed)?;
-        }
+        let (mut state, sensed) =
+            self.sensor.move_through(self.state(), duration, |state, begin, duration| {
+                self.moved(state, voltage + slope * begin, duration)
+            })?;
         if self.values[PROCESS_FLUX_NOISE] > 0.0 {
             state.flux += self.values[PROCESS_FLUX_NOISE] * self.process_noise.sample();
         }
@@ -254,8 +247,8 @@ impl Unit for MagneticBearingPlant {
         self.values[VOLTAGE_MEASURED] = voltage + 0.5 * slope * duration;
         self.settle_flux_sign();
         self.evaluate();
-        self.sensor.skip_to_last(&readings, self.values[SENSOR_NOISE]);
-        if let Some(position) = sensed {
+        self.sensor.skip_to_last(duration, self.values[SENSOR_NOISE]);
+        if let Some(State { position, .. }) = sensed {
             self.read_sensor(position);
         }
         Ok(())
