@@ -25,6 +25,7 @@ mod sensor;
 mod start_delay;
 pub mod start_values;
 pub mod system;
+mod token;
 pub mod value;
 pub mod variable;
 pub mod work;
@@ -32,7 +33,7 @@ pub mod work;
 use core::fmt;
 
 pub use continuous::{ContinuousRows, ContinuousUnit, Solver};
-pub use description::{Description, Token};
+pub use description::Description;
 pub use edition::Edition;
 pub use levitated_ball_controller::LevitatedBallController;
 pub use levitated_ball_plant::LevitatedBallPlant;
@@ -46,6 +47,7 @@ pub use sampled::SampledUnit;
 pub use start_values::StartValues;
 pub use system::System;
 use thiserror::Error;
+pub use token::Token;
 use value::Readable;
 
 /// Kinds of remarks a unit makes while it runs.
