@@ -122,8 +122,8 @@ pub trait Unit: Persistent + Send {
     /// Takes over tunable parameters that were set since the last step; initialisation does so, too.
     fn adopt_parameters(&mut self);
 
-    /// Whether the parameters fit together. Asked when they are all set, at the end of initialisation and when tunable
-    /// ones were set since: in between an importer may be about to set another one.
+    /// Whether the parameters fit together. Asked when they are all set, which is at the start, when tunable ones were set
+    /// since, and when they come from a file: in between an importer may be about to set another one.
     fn check_parameters(&self) -> Result<(), UnitError> {
         Ok(())
     }
@@ -131,6 +131,12 @@ pub trait Unit: Persistent + Send {
     /// Computes all calculated values and the internal state from parameters and inputs at `start_time` \[s\].
     /// May be called again after a parameter changed, until the first [`Unit::advance`].
     fn initialise(&mut self, start_time: f64) -> Result<(), UnitError>;
+
+    /// As [`Unit::initialise`], with the parameters that the unit is to run with: refused if they do not fit together.
+    fn start(&mut self, start_time: f64) -> Result<(), UnitError> {
+        self.check_parameters()?;
+        self.initialise(start_time)
+    }
 
     /// Lets `duration` \[s\], positive and finite, pass with the present inputs held.
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError>;

@@ -27,7 +27,7 @@ pub use reading::LARGEST;
 use super::{PackageError, WrittenFile, replace_file};
 use crate::unit::start_values::StartValueError;
 use crate::unit::variable::{Kind, Variable};
-use crate::unit::{Description, StartValues, UNITS};
+use crate::unit::{Description, StartValues, UNITS, UnitError};
 
 /// Contents of a parameter file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -61,6 +61,8 @@ pub enum ParameterFileError {
     #[error(transparent)]
     StartValue(#[from] StartValueError),
     #[error(transparent)]
+    DoNotFit(#[from] UnitError),
+    #[error(transparent)]
     Write(#[from] PackageError),
 }
 
@@ -81,7 +83,9 @@ impl ParameterFile {
             values.insert(name.to_owned(), number(variable, value));
             units.insert(name.to_owned(), unit_text(variable, value).into());
         }
-        Ok(Self { unit: description.name.to_owned(), values, units, provenance })
+        let file = Self { unit: description.name.to_owned(), values, units, provenance };
+        file.start_values()?;
+        Ok(file)
     }
 
     pub fn write(&self, path: &Path) -> Result<WrittenFile, ParameterFileError> {
@@ -90,13 +94,13 @@ impl ParameterFile {
         Ok(WrittenFile { path: path.to_owned(), size: text.len() })
     }
 
-    /// The unit's table and the values, checked.
+    /// The unit's table and the values, checked by themselves and whether they fit together.
     pub fn start_values(&self) -> Result<(&'static Description, StartValues), ParameterFileError> {
-        let description = UNITS
+        let unit = UNITS
             .iter()
-            .map(|unit| unit.description)
-            .find(|description| description.name == self.unit)
+            .find(|unit| unit.description.name == self.unit)
             .ok_or_else(|| ParameterFileError::UnknownUnit { name: self.unit.clone() })?;
+        let description = unit.description;
         let mut start_values = StartValues::default();
         for (name, value) in &self.values {
             let (variable, number) = checked(description, name, value)?;
@@ -112,6 +116,9 @@ impl ParameterFile {
                 }
             }
         }
+        let mut unit = (unit.create)();
+        start_values.apply(&mut *unit);
+        unit.check_parameters()?;
         Ok((description, start_values))
     }
 }
