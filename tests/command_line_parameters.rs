@@ -47,6 +47,24 @@ fn maglev_fmu(directory: &Path, arguments: &[String]) -> (Option<i32>, String) {
     (output.status.code(), String::from_utf8(output.stderr).unwrap())
 }
 
+/// Guards: a key that writes a line of its own into the message.
+#[test]
+fn keys_are_told_in_one_line() {
+    let directory = tempfile::tempdir().unwrap();
+    let unit = json!("MaglevRigController");
+    for file in [
+        json!({ "unit": unit, "values": {}, "a\nerror: b\r\u{1b}[2J": 1 }),
+        json!({ "unit": unit, "values": { "a\nerror: b\r\u{1b}[2J": 1 } }),
+        json!({ "unit": "a\nerror: b\r\u{1b}[2J", "values": {} }),
+    ] {
+        fs::write(directory.path().join("file.json"), file.to_string()).unwrap();
+        let (status, message) = maglev_fmu(directory.path(), &words("build --parameters file.json"));
+        assert_eq!(status, Some(1));
+        assert!(message.contains(r"a\nerror: b\r\u{1b}[2J"), "{message}");
+        assert_eq!(message.lines().count(), 1, "{message}");
+    }
+}
+
 fn words(text: &str) -> Vec<String> {
     text.split(' ').map(str::to_owned).collect()
 }
