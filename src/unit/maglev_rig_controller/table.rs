@@ -135,7 +135,7 @@ variable_table! {
     REFERENCE = Variable::input("reference", &SENSOR_VOLTAGE_QUANTITY)
         .start(OPERATING_SENSOR_VOLTAGE)
         .range(-1e6, 1e6)
-        .describe("r, wanted sensor voltage; -1.50868 V is 9 mm");
+        .describe("r, wanted sensor voltage; sensor_gain x + sensor_offset is a distance x from the coil");
     VOLTAGE_APPLIED = Variable::input("voltage_applied", &DRIVER_VOLTAGE)
         .start(OPERATING_VOLTAGE)
         .range(-1e6, 1e6)

@@ -166,10 +166,10 @@ variable_table! {
         .describe("Step of the sensor's output, 0 for none");
     SENSOR_MINIMUM = Variable::tunable("sensor.minimum", Kind::Real(&SENSOR_VOLTAGE_QUANTITY), -3.75)
         .range(-1e3, 0.0)
-        .describe("Smallest sensor voltage; -3.75 V in the rig's manual, which no ball can reach");
+        .describe("Smallest sensor voltage, which no ball can reach; -3.75 V with the offset of the rig's manual");
     SENSOR_MAXIMUM = Variable::tunable("sensor.maximum", Kind::Real(&SENSOR_VOLTAGE_QUANTITY), 1.25)
         .range(0.0, 1e3)
-        .describe("Largest sensor voltage; 1.25 V in the rig's manual, 28 mm");
+        .describe("Largest sensor voltage, 28 mm; 1.25 V with the offset of the rig's manual");
     SENSOR_SAMPLE_TIME = sample_time();
     SENSOR_SEED = Variable::parameter("sensor.seed", Kind::Integer, 1.0)
         .range(0.0, i32::MAX as f64)
