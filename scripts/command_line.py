@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import io
 import math
 import os
 import sys
@@ -64,8 +65,14 @@ def image(text: str) -> Path:
     kinds = sorted(Figure().canvas.get_supported_filetypes())
     if path.suffix.removeprefix(".").lower() not in kinds:
         raise argparse.ArgumentTypeError(f"{text!r}: expected a name that ends with one of .{', .'.join(kinds)}")
-    if path.is_dir() or not path.absolute().parent.is_dir():
-        raise argparse.ArgumentTypeError(f"{text!r}: expected a file in a directory that exists")
+    try:
+        directory = path.absolute().parent.resolve(strict=True)
+        is_file = path.is_file() or not path.exists()
+    except OSError:
+        is_file = False
+    # A picture is written under another name first, which is no business of a directory of devices.
+    if not is_file or not directory.is_dir() or directory == Path("/dev"):
+        raise argparse.ArgumentTypeError(f"{text!r}: expected a file in a directory that exists, no device")
     return path
 
 
@@ -111,11 +118,16 @@ def explained() -> Iterator[None]:
     try:
         yield
     except FileNotFoundError as error:
-        sys.exit(f"{error}\nBuild the FMUs first: cargo run --release -- build")
+        sys.exit(f"{one_line(error)}\nBuild the FMUs first: cargo run --release -- build")
     except (OSError, ValueError, FMICallException) as error:
-        sys.exit(str(error))
+        sys.exit(one_line(error))
     except KeyError as error:
-        sys.exit(str(error.args[0]))
+        sys.exit(one_line(error.args[0]))
+
+
+def one_line(text: object) -> str:
+    """A message in one line, with whatever steers the terminal escaped: messages quote names from files."""
+    return "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in str(text))
 
 
 def tell(text: str) -> None:
@@ -142,10 +154,17 @@ def finish(summary: str, figure: Figure, options: argparse.Namespace) -> None:
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write a picture under another name first, so that it appears whole or not at all."""
-    part = path.with_name(f".{path.stem}.part{path.suffix}")
+    """Write a picture under another name first, so that it appears whole or not at all; a link stays a link."""
+    picture = io.BytesIO()
     try:
-        figure.savefig(part, dpi=150)
+        figure.savefig(picture, format=path.suffix.removeprefix(".").lower(), dpi=150)
+    except Exception as error:  # of whatever library or program draws this kind of picture
+        sys.exit(f"cannot draw {path}: {one_line(error)}")
+    path = path.resolve()
+    part = path.with_name(f".{os.getpid()}.part")
+    try:
+        with part.open("xb") as file:
+            file.write(picture.getvalue())
         part.replace(path)
     except OSError as error:
         part.unlink(missing_ok=True)

@@ -1,9 +1,10 @@
-//! The whole story of an error of somebody else's library, for a message.
+//! What is said of an error: the whole story if it is one of somebody else's library, and nothing that steers the terminal.
 
 use std::error::Error;
 
 /// The error and its causes, outermost first, separated by colons. Libraries keep the decisive part, such as what the
-/// dynamic linker said, in the cause. A cause that the text before it quotes already is left out.
+/// dynamic linker said, in the cause. A cause that the text before it quotes already is left out. Such texts quote names from
+/// files as they are, hence [`printable`].
 pub(crate) fn with_causes(error: &(dyn Error + 'static)) -> String {
     let mut text = error.to_string();
     let mut next = error.source();
@@ -14,7 +15,20 @@ pub(crate) fn with_causes(error: &(dyn Error + 'static)) -> String {
         }
         next = cause.source();
     }
-    text
+    printable(&text)
+}
+
+/// The text in one line, with whatever could move the cursor, colour the screen or turn the direction of writing escaped:
+/// messages quote names from files.
+pub fn printable(text: &str) -> String {
+    let mut line = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '"' | '\'' | '\\' => line.push(letter),
+            other => line.extend(other.escape_debug()),
+        }
+    }
+    line
 }
 
 #[cfg(test)]
@@ -28,6 +42,16 @@ mod tests {
         Silent(#[source] io::Error),
         #[error("cannot open: {0}")]
         Quoting(#[source] io::Error),
+    }
+
+    #[test]
+    fn messages_cannot_steer_the_terminal() {
+        let kept = "`größe\\x` is \"no\" name, it's not: 5 \u{3bc}m";
+        assert_eq!(printable(kept), kept);
+        let steering = "a\u{1b}[2Jb\u{202e}c\u{7f}d\re\nf\tg\0";
+        assert_eq!(printable(steering), r"a\u{1b}[2Jb\u{202e}c\u{7f}d\re\nf\tg\0");
+        let quoting = Outer::Silent(io::Error::other("no field `a\nb`"));
+        assert_eq!(with_causes(&quoting), r"cannot open: no field `a\nb`");
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Magnetic levitation and magnetic bearings as FMI 2.0 and FMI 3.0 units.
 
 #[cfg(feature = "tools")]
-mod causes;
+pub mod causes;
 pub mod controller;
 #[cfg(feature = "tools")]
 mod file;

@@ -148,6 +148,37 @@ fn a_file_is_whole_or_the_old_one() {
     }
 }
 
+/// Guards: pictures of a search in /dev, or beside a pipe or a link to a device.
+#[cfg(target_os = "linux")]
+#[test]
+fn nothing_is_put_beside_a_device() {
+    let directory = tempfile::tempdir().unwrap();
+    std::os::unix::fs::symlink("/dev/full", directory.path().join("link.json")).unwrap();
+    let pipe = Command::new("mkfifo").arg(directory.path().join("pipe.json")).status().unwrap();
+    assert!(pipe.success());
+    let names = |path: &Path| -> Vec<_> {
+        let mut names: Vec<_> = fs::read_dir(path).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        names.sort();
+        names
+    };
+    let before = [names(Path::new("/dev")), names(directory.path())];
+    for (file, reason) in [
+        ("/dev/full", "a directory, device or pipe"),
+        ("/dev/full.json", "among devices"),
+        ("/dev/../dev/full.json", "among devices"),
+        ("link.json", "a directory, device or pipe"),
+        ("pipe.json", "a directory, device or pipe"),
+        (".", "a directory, device or pipe"),
+    ] {
+        let arguments = ["tune", "--particles", "2", "--iterations", "1", "--out", file];
+        let output = maglev_fmu(directory.path(), &arguments).output().unwrap();
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{file}: {message}");
+        assert!(message.contains(&format!("{reason}: expected a file")), "{message}");
+    }
+    assert_eq!([names(Path::new("/dev")), names(directory.path())], before);
+}
+
 /// Guards: a panic in the random numbers, after some thousand iterations that were lost with it.
 #[test]
 fn a_diverging_search_ends_with_what_it_has() {

@@ -146,6 +146,21 @@ fn an_unknown_variable_is_named_with_a_suggestion() {
     assert_eq!(message(""), "model `Rotor & bearing` has no variable ``");
 }
 
+/// Guards: names from a file that write a line of their own into a message, or colour the terminal.
+#[test]
+fn names_are_told_in_one_line() {
+    let steering = "position&#10;error:&#27;[2J".replace("&#27;", "\u{7f}");
+    let model = FMI2.replace("modelName=\"Rotor &amp; bearing\"", &format!("modelName=\"{steering}\""));
+    assert_ne!(model, FMI2);
+    let description = ModelDescription::parse(&model).unwrap();
+    let message = description.variable("speed").unwrap_err().to_string();
+    assert_eq!(message, r"model `position\nerror:\u{7f}[2J` has no variable `speed`");
+
+    let wrong = FMI2.replace("fmiVersion=\"2.0\"", &format!("fmiVersion=\"{steering}\""));
+    let message = ModelDescription::parse(&wrong).unwrap_err().to_string();
+    assert!(message.contains(r"position\nerror:\u{7f}[2J"), "{message}");
+}
+
 #[test]
 fn broken_descriptions_are_refused_with_the_reason() {
     let refused = |xml: &str| ModelDescription::parse(xml).unwrap_err();

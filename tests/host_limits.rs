@@ -13,6 +13,7 @@ use zip::write::{FullFileOptions, SimpleFileOptions};
 
 const SMALL: Limits = Limits {
     entries: 5,
+    levels: 6,
     entry_bytes: 1_000,
     total_bytes: 1_500,
     description_bytes: 400,
@@ -87,6 +88,49 @@ fn what_is_too_large_is_refused_by_name() {
         "{message}"
     );
     Archive::unpack_within(&path, &Limits { entries: 6, ..SMALL }).unwrap();
+}
+
+/// Guards: thousands of directories from one path, of which only the file at its end was counted.
+#[test]
+fn directories_on_the_way_to_a_file_are_counted() {
+    let entries: [(&str, &[u8]); 2] = [("a/b/c/d", b""), ("a/b/c/e", b"")];
+    let (_directory, path) = archive(&entries);
+    Archive::unpack_within(&path, &SMALL).unwrap();
+    let (_directory, path) = archive(&[entries[0], entries[1], ("a/f/", b"")]);
+    let message = refused(&path, &SMALL).to_string();
+    assert!(
+        message.starts_with("files and directories of the FMU")
+            && message.ends_with("more than 5, but `Limits::entries` = 5; raise it if you trust the file"),
+        "{message}"
+    );
+    Archive::unpack_within(&path, &Limits { entries: 6, ..SMALL }).unwrap();
+
+    // Many paths of many levels each.
+    let names: Vec<String> = (0..300).map(|number| format!("{number}/").repeat(60) + "file").collect();
+    let entries: Vec<(&str, &[u8])> = names.iter().map(|name| (name.as_str(), b"".as_slice())).collect();
+    let (_directory, path) = archive(&entries);
+    assert!(refused(&path, &Limits::default()).to_string().contains("`Limits::entries` = 10000"));
+}
+
+/// Guards: directories so deep that they cannot be deleted again with the file descriptors of a process.
+#[test]
+fn deep_paths_are_refused() {
+    let deep = "d/".repeat(1_900);
+    for name in [deep.clone(), format!("{deep}file"), deep.replace('/', "\\")] {
+        let (_directory, path) = archive(&[(&name, b"")]);
+        let message = refused(&path, &Limits::default()).to_string();
+        assert!(message.contains("`d/d/") || message.contains("`d\\\\d"), "{message}");
+        assert!(
+            message.contains(": a path of 190") && message.contains("`Limits::levels` = 64"),
+            "{message}"
+        );
+        assert!(message.len() < 300, "{message}");
+    }
+    let (_directory, path) = archive(&[("1/2/3/4/5", b"")]);
+    Archive::unpack_within(&path, &SMALL).unwrap();
+    let (_directory, path) = archive(&[("1/2/3/4/5/6", b"")]);
+    Archive::unpack_within(&path, &Limits { entries: 6, ..SMALL }).unwrap();
+    assert!(Archive::unpack_within(&path, &Limits { entries: 6, levels: 5, ..SMALL }).is_err());
 }
 
 #[test]

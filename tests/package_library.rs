@@ -8,7 +8,7 @@ use std::fs;
 use library_file::{all_functions, library};
 use maglev_fmu::fmi::{FmiVersion, function_names};
 use maglev_fmu::package::{Library, PackageError};
-use maglev_fmu::unit::UNITS;
+use maglev_fmu::unit::{Token, UNITS, editions};
 use object::{Architecture, BinaryFormat};
 use proptest::prelude::*;
 
@@ -76,6 +76,30 @@ fn other_processors_and_other_units_are_refused() {
     let mut program = library(BinaryFormat::MachO, Architecture::X86_64, &all_functions());
     program[12..16].copy_from_slice(&object::macho::MH_EXECUTE.0.to_le_bytes());
     assert!(matches!(read(&program), Err(PackageError::UnknownPlatform { .. })));
+}
+
+/// Guards: packages whose library refuses every token in their model descriptions.
+#[test]
+fn a_library_of_another_release_is_refused() {
+    for (unit, edition) in editions() {
+        let mut bytes = library(BinaryFormat::Elf, Architecture::X86_64, &all_functions());
+        let token = edition.token(unit.description);
+        let place = bytes.windows(Token::LENGTH).position(|part| part == token.as_str().as_bytes()).unwrap();
+        // Another hexadecimal digit.
+        bytes[place + 1] = if bytes[place + 1] == b'0' { b'1' } else { b'0' };
+        let error = read(&bytes).unwrap_err();
+        let name = unit.description.name;
+        assert!(
+            matches!(&error, PackageError::OtherRelease { unit, .. } if *unit == name),
+            "{edition:?}: {error}"
+        );
+        let message = error.to_string();
+        assert!(message.contains("is the library of another release: it would refuse"), "{message}");
+        assert!(
+            message.ends_with(&format!("of {name}; build it from the sources of this program")),
+            "{message}"
+        );
+    }
 }
 
 #[test]

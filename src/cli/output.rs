@@ -2,7 +2,9 @@
 
 use std::error::Error;
 use std::fmt;
+use std::fs;
 use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
 
 use maglev_fmu::package::WrittenFile;
 
@@ -27,6 +29,20 @@ pub fn say(line: fmt::Arguments<'_>) -> Result<(), OutputError> {
 /// Tells the user about a file.
 pub fn report(WrittenFile { path, size }: &WrittenFile) -> Result<(), OutputError> {
     say(format_args!("{:>9.1} kB  {}", *size as f64 / 1e3, path.display()))
+}
+
+/// Type of an option: a file beside which others are put, under its name with other endings. No file belongs beside a
+/// device.
+pub fn with_room_beside(path: PathBuf) -> Result<PathBuf, String> {
+    let expected = "expected a file, for others are put beside it";
+    if fs::metadata(&path).is_ok_and(|known| !known.is_file()) {
+        return Err(format!("a directory, device or pipe: {expected}"));
+    }
+    let directory = path.parent().and_then(|parent| fs::canonicalize(parent).ok());
+    match directory {
+        Some(directory) if directory == Path::new("/dev") => Err(format!("among devices: {expected}")),
+        _ => Ok(path),
+    }
 }
 
 /// Many lines, written in blocks.

@@ -49,8 +49,8 @@ impl Trace {
         let (mut plant, mut controller) = ((self.system.plant.create)(), (self.system.controller.create)());
         self.plant.iter().try_for_each(|assignment| assign(&mut *plant, assignment))?;
         self.controller.iter().try_for_each(|assignment| assign(&mut *controller, assignment))?;
-        plant.initialise(0.0)?;
-        controller.initialise(0.0)?;
+        plant.start(0.0)?;
+        controller.start(0.0)?;
         let step_size = self.step_size.unwrap_or_else(|| *value(&mut *controller, "sample_time"));
         let (plant_outputs, controller_outputs) = (real_outputs(&*plant), real_outputs(&*controller));
         let mut lines = Lines::new();

@@ -3,6 +3,7 @@
 use std::error::Error;
 use std::path::PathBuf;
 
+use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use maglev_fmu::host::Value;
@@ -15,7 +16,7 @@ use maglev_fmu::study::tuning::{Objective, Tuned, convergence, noise_aware, tune
 use maglev_fmu::unit::system::RIG;
 use serde_json::json;
 
-use super::output::{report, say};
+use super::output::{report, say, with_room_beside};
 
 /// Tune an observer of the maglev rig by particle swarm and write a parameter file
 ///
@@ -42,7 +43,7 @@ pub struct Tune {
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     /// Parameter file to write [default: results/rig-OBSERVER-OBJECTIVE.json]
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = PathBufValueParser::new().try_map(with_room_beside))]
     out: Option<PathBuf>,
 }
 

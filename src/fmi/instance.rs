@@ -132,9 +132,8 @@ impl Instance {
     }
 
     pub(super) fn exit_initialization_mode(&mut self) -> Result<(), CallError> {
-        self.unit.check_parameters()?;
-        self.is_stale = true;
-        self.refresh()?;
+        in_default_environment(|| self.unit.start(self.start_time))?;
+        self.is_stale = false;
         self.phase = self.interface.first_phase();
         let (name, start_time) = (self.unit.description().name, self.start_time);
         self.note(format_args!("{name} initialised at t = {start_time} s"));

@@ -47,7 +47,8 @@ impl Archive {
             let reason = format!("no temporary directory: {error}");
             HostError::OpenArchive { path: path.to_owned(), reason }
         })?;
-        Unpacking { path, limits, root: directory.path(), names: HashSet::new(), written: 0 }.run(zip)?;
+        Unpacking { path, limits, root: directory.path(), names: HashSet::new(), made: 0, written: 0 }
+            .run(zip)?;
         Ok(Self { directory, limits: *limits })
     }
 
@@ -97,6 +98,8 @@ struct Unpacking<'a> {
     root: &'a Path,
     /// Of the files so far, in lower case: some file systems take names that differ in case only for one.
     names: HashSet<String>,
+    /// Files and directories so far.
+    made: usize,
     /// Bytes of the files so far.
     written: u64,
 }
@@ -116,6 +119,7 @@ impl Unpacking<'_> {
             if entry.is_symlink() {
                 return Err(self.refused(&name, "is a link, which may lead anywhere"));
             }
+            self.count(&name, &relative)?;
             let target = self.root.join(&relative);
             let written = if name.ends_with(['/', '\\']) {
                 fs::create_dir_all(&target)
@@ -131,6 +135,31 @@ impl Unpacking<'_> {
                 reason: with_causes(&error),
             })?;
         }
+        Ok(())
+    }
+
+    /// Counts what is to be made for an entry: the file or directory itself and those on the way that are not there yet.
+    fn count(&mut self, name: &str, relative: &Path) -> Result<()> {
+        let over = |subject: String, value: String, limit: usize, name: &'static str| HostError::OverLimit {
+            subject: format!("{subject} of the FMU {}", self.path.display()),
+            value,
+            limit: limit as u64,
+            name,
+        };
+        let Limits { entries, levels, .. } = *self.limits;
+        let depth = relative.components().count();
+        if depth > levels {
+            let begin: String = name.chars().take(40).collect();
+            let subject = format!("`{}...`", begin.escape_debug());
+            return Err(over(subject, format!("a path of {depth} names"), levels, "levels"));
+        }
+        let is_missing = |path: &&Path| !self.root.join(path).exists();
+        let made = self.made + relative.ancestors().take_while(is_missing).count();
+        if made > entries {
+            let subject = "files and directories".to_owned();
+            return Err(over(subject, format!("more than {entries}"), entries, "entries"));
+        }
+        self.made = made;
         Ok(())
     }
 

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
+use crate::causes::printable;
 use crate::fmi::Status;
 
 use super::description::{Kind, Storage};
@@ -36,34 +37,48 @@ pub enum HostError {
     #[error("cannot read modelDescription.xml: {reason}")]
     Description { reason: String },
     /// An attribute of `modelDescription.xml` holds a value of the wrong type.
-    #[error("cannot read modelDescription.xml: {attribute}=\"{text}\" of {element} is not {expected}")]
+    #[error(
+        "cannot read modelDescription.xml: {attribute}=\"{text}\" of {element} is not {expected}",
+        element = printable(element), text = printable(text)
+    )]
     Attribute { element: String, attribute: &'static str, text: String, expected: &'static str },
     /// `modelDescription.xml` gives a name, or a value reference of FMI 3.0, to two variables.
-    #[error("cannot read modelDescription.xml: {what} is given to two variables, {first} and {second}")]
+    #[error(
+        "cannot read modelDescription.xml: {what} is given to two variables, {first} and {second}",
+        what = printable(what), first = printable(first), second = printable(second)
+    )]
     Duplicate { what: String, first: String, second: String },
     /// Neither FMI 2 nor FMI 3.
-    #[error("fmiVersion \"{version}\" is not supported, only 2.0 and 3.0 are")]
+    #[error("fmiVersion \"{version}\" is not supported, only 2.0 and 3.0 are", version = printable(version))]
     UnsupportedVersion { version: String },
     /// The FMU is for model exchange or scheduled execution only.
-    #[error("model `{model}` offers no co-simulation interface")]
+    #[error("model `{model}` offers no co-simulation interface", model = printable(model))]
     NoCoSimulation { model: String },
     /// No shared library for the platform this program runs on.
     #[error(
         "model `{model}` has no shared library for this platform: looked for {wanted}, the FMU has {}",
-        if found.is_empty() { "no binaries at all" } else { found }
+        if found.is_empty() { "no binaries at all".to_owned() } else { printable(found) },
+        model = printable(model)
     )]
     NoLibrary { model: String, wanted: String, found: String },
     /// The operating system refused the shared library.
     #[error("cannot load the shared library {}: {reason}", path.display())]
     LoadLibrary { path: PathBuf, reason: String },
     /// The shared library does not export a function that is needed.
-    #[error("the shared library of `{model}` does not export the function {function}")]
+    #[error(
+        "the shared library of `{model}` does not export the function {function}", model = printable(model)
+    )]
     MissingFunction { model: String, function: &'static str },
     /// The shared library was built for another version of the standard than its XML says.
-    #[error("{function} of `{model}` returned \"{reported}\", but its fmiVersion is {expected}")]
+    #[error(
+        "{function} of `{model}` returned \"{reported}\", but its fmiVersion is {expected}",
+        model = printable(model), reported = printable(reported)
+    )]
     VersionMismatch { model: String, function: &'static str, reported: String, expected: &'static str },
     /// The FMU returned no instance.
-    #[error("{function} of `{model}` returned no instance for `{instance}`{}", Said(log))]
+    #[error(
+        "{function} of `{model}` returned no instance for `{instance}`{}", Said(log), model = printable(model)
+    )]
     Instantiate { model: String, function: &'static str, instance: String, log: Option<String> },
     /// A function returned something worse than a warning.
     #[error("{function} of instance `{instance}` returned {status}{}", Said(log))]
@@ -75,19 +90,34 @@ pub enum HostError {
     #[error("instance `{instance}` asked to terminate the simulation in the step from {time} s{}", Said(log))]
     TerminationRequested { instance: String, time: f64, log: Option<String> },
     /// There is no variable of that name.
-    #[error("model `{model}` has no variable `{variable}`{}", Suggestion(similar))]
+    #[error(
+        "model `{model}` has no variable `{variable}`{}",
+        Suggestion(similar), model = printable(model), variable = printable(variable)
+    )]
     UnknownVariable { model: String, variable: String, similar: Option<String> },
     /// The variable is an array; the host handles scalars.
-    #[error("variable `{variable}` of `{model}` is an array, only scalars are supported")]
+    #[error(
+        "variable `{variable}` of `{model}` is an array, only scalars are supported",
+        model = printable(model), variable = printable(variable)
+    )]
     Array { model: String, variable: String },
     /// The variable does not take values of that kind.
-    #[error("variable `{variable}` of instance `{instance}` is of kind {kind:?} and takes no {given}")]
+    #[error(
+        "variable `{variable}` of instance `{instance}` is of kind {kind:?} and takes no {given}",
+        variable = printable(variable)
+    )]
     WrongKind { instance: String, variable: String, kind: Kind, given: &'static str },
     /// The number cannot be passed exactly: not whole, out of range, or beyond 2^53.
-    #[error("{value} of variable `{variable}` of instance `{instance}` has no exact counterpart in {target}")]
+    #[error(
+        "{value} of variable `{variable}` of instance `{instance}` has no exact counterpart in {target}",
+        variable = printable(variable)
+    )]
     NotRepresentable { instance: String, variable: String, value: f64, target: Storage },
     /// The enumeration has no item of that name.
-    #[error("variable `{variable}` of instance `{instance}` has no item `{item}`, only {known}")]
+    #[error(
+        "variable `{variable}` of instance `{instance}` has no item `{item}`, only {known}",
+        variable = printable(variable), known = printable(known)
+    )]
     UnknownItem { instance: String, variable: String, item: String, known: String },
     /// A text for C may not contain a NUL character.
     #[error("the text {text:?} for `{purpose}` contains a NUL character")]
@@ -99,7 +129,10 @@ pub enum HostError {
     #[error("the saved state was taken from another instance than `{instance}`")]
     ForeignState { instance: String },
     /// A master knows a `controller` and a `plant`, nothing else.
-    #[error("cannot record `{variable}` of `{unit}`: the units of the loop are `controller` and `plant`")]
+    #[error(
+        "cannot record `{variable}` of `{unit}`: the units of the loop are `controller` and `plant`",
+        variable = printable(variable)
+    )]
     UnknownUnit { unit: String, variable: String },
     /// A run can append only to a trace with the columns that the loop records.
     #[error("the trace has the columns [{trace}], the loop records [{recorded}]")]
@@ -138,7 +171,7 @@ struct Said<'a>(&'a Option<String>);
 impl fmt::Display for Said<'_> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.0 {
-            Some(text) => write!(formatter, "; its last log message: {text}"),
+            Some(text) => write!(formatter, "; its last log message: {}", printable(text)),
             None => formatter.write_str(" and logged nothing"),
         }
     }
@@ -150,7 +183,7 @@ struct Suggestion<'a>(&'a Option<String>);
 impl fmt::Display for Suggestion<'_> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.0 {
-            Some(name) => write!(formatter, ", did you mean `{name}`?"),
+            Some(name) => write!(formatter, ", did you mean `{}`?", printable(name)),
             None => Ok(()),
         }
     }

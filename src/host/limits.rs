@@ -14,8 +14,11 @@
 /// compression: honest tables compress by a thousand, and what matters is how much is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Files and directories in the archive.
+    /// Files and directories, in the archive and unpacked: also those that stand in the path of another entry only.
     pub entries: usize,
+    /// Names in the path of an entry, as many as directories lie within one another. One that is deleted with all that is in
+    /// it takes a file descriptor for each.
+    pub levels: usize,
     /// One file, unpacked.
     pub entry_bytes: u64,
     /// All files, unpacked, and the archive itself.
@@ -27,10 +30,11 @@ pub struct Limits {
 }
 
 impl Default for Limits {
-    /// 10 000 entries, 256 MiB each and 512 MiB together; a description of 64 MiB and 1 000 000 elements.
+    /// 10 000 entries, 64 levels deep at most, 256 MiB each and 512 MiB together; a description of 64 MiB and 1 000 000 elements.
     fn default() -> Self {
         Self {
             entries: 10_000,
+            levels: 64,
             entry_bytes: 256 << 20,
             total_bytes: 512 << 20,
             description_bytes: 64 << 20,

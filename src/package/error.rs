@@ -53,6 +53,12 @@ pub enum PackageError {
     MissingFunctions { path: PathBuf, first: String, count: usize },
     #[error("{} is a library of other units: it does not know {unit}", .path.display())]
     OtherUnits { path: PathBuf, unit: &'static str },
+    #[error(
+        "{} is the library of another release: it would refuse the instantiation token in the model description of \
+         {unit}; build it from the sources of this program",
+        .path.display()
+    )]
+    OtherRelease { path: PathBuf, unit: &'static str },
     #[error("{} and {} are both for {platform}: expected one library per platform", .first.display(), .second.display())]
     SamePlatform { first: PathBuf, second: PathBuf, platform: String },
     #[error("SOURCE_DATE_EPOCH = {value:?}: expected seconds since 1970, 0 to {}", u32::MAX)]

@@ -10,7 +10,7 @@ use object::{BinaryFormat, Object};
 use super::{FmiVersion, PackageError, Platform};
 use crate::file;
 use crate::fmi::function_names;
-use crate::unit::UNITS;
+use crate::unit::{Edition, Token, UNITS, editions};
 
 /// Name of the library target, which differs from the package's in the dash.
 const LIBRARY_NAME: &str = "maglev_fmu";
@@ -27,8 +27,9 @@ pub struct Library {
 }
 
 impl Library {
-    /// Reads the library at `path`, finds out what platform it is for, and makes sure that it is one of these units: it
-    /// exports every function of both standards and knows every unit's name.
+    /// Reads the library at `path`, finds out what platform it is for, and makes sure that it serves these units: it
+    /// exports every function of both standards, knows every unit's name, and its instantiation tokens are those that
+    /// the model descriptions will have.
     pub fn read(path: &Path) -> Result<Self, PackageError> {
         let bytes = file::read_at_most(path, LARGEST)
             .map_err(|source| PackageError::Read { path: path.to_owned(), source })?;
@@ -47,6 +48,12 @@ impl Library {
         let is_known = |name: &str| bytes.windows(name.len()).any(|part| part == name.as_bytes());
         if let Some(unit) = UNITS.iter().map(|unit| unit.description.name).find(|name| !is_known(name)) {
             return Err(PackageError::OtherUnits { path: path.to_owned(), unit });
+        }
+        let tokens = texts_like_tokens(&bytes);
+        let is_missing =
+            |edition: &Edition, description| !tokens.contains(edition.token(description).as_str().as_bytes());
+        if let Some((unit, _)) = editions().find(|(unit, edition)| is_missing(edition, unit.description)) {
+            return Err(PackageError::OtherRelease { path: path.to_owned(), unit: unit.description.name });
         }
         Ok(Self { path: path.to_owned(), platform, bytes })
     }
@@ -100,6 +107,12 @@ fn missing_functions(library: &object::File<'_>) -> Vec<&'static str> {
         .collect();
     let wanted = FmiVersion::ALL.into_iter().flat_map(function_names).copied();
     wanted.filter(|name| !names.contains(name.as_bytes())).collect()
+}
+
+/// Whatever in the library has the length and the braces of an instantiation token.
+fn texts_like_tokens(bytes: &[u8]) -> HashSet<&[u8]> {
+    let parts = bytes.windows(Token::LENGTH);
+    parts.filter(|part| part.starts_with(b"{") && part.ends_with(b"}")).collect()
 }
 
 /// The library in the program's directory, where `cargo build` and an installation put it, or in `deps` below,

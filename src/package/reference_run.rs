@@ -141,7 +141,7 @@ impl Bench {
             apply_starts_of_partner(system, description, start_values, &types, &mut units);
         }
         start_values.apply(&mut *units[place]);
-        units.iter_mut().try_for_each(|unit| unit.initialise(0.0))?;
+        units.iter_mut().try_for_each(|unit| unit.start(0.0))?;
         let wires =
             system.map_or(&[][..], |system| if place == PLANT { system.actuation } else { system.sensing });
         let is_free = |variable: &Variable| {

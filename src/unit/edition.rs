@@ -1,8 +1,7 @@
 //! How much of a unit a package shows.
 
-use super::Description;
-use super::description::Token;
-use super::sampled::ClockVariable;
+use super::sampled::{CLOCKS, ClockVariable};
+use super::{Description, Token};
 
 /// What a package shows of a unit. All editions are served by the same library and compute the same; the instantiation
 /// token tells which one an importer has read.
@@ -26,21 +25,25 @@ impl Edition {
         }
     }
 
+    /// Clocks that the edition shows of a unit.
+    pub(super) const fn clock_table(self, is_sampled: bool) -> &'static [ClockVariable] {
+        match self {
+            Self::Clocked if is_sampled => &CLOCKS,
+            _ => &[],
+        }
+    }
+
     /// Clocks that the edition shows, with their value references.
     pub fn clocks(
         self,
         description: &Description,
     ) -> impl Iterator<Item = (usize, &'static ClockVariable)> + use<> {
-        let shown = match self {
-            Self::Plain => 0,
-            Self::Clocked => usize::MAX,
-        };
-        description.clocks().take(shown)
+        (description.variables.len()..).zip(self.clock_table(description.is_sampled()))
     }
 
-    /// Instantiation token of the unit in this edition; that of the plain one is the unit's own.
+    /// Instantiation token of the unit in this edition.
     pub fn token(self, description: &Description) -> Token {
-        description.token_with(self.clocks(description).map(|(_, clock)| clock.name))
+        description.tokens[self as usize]
     }
 }
 

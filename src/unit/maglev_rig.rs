@@ -149,7 +149,7 @@ pub const fn sensor_gain() -> Variable {
 pub const fn sensor_offset() -> Variable {
     Variable::parameter("sensor_offset", Kind::Real(&SENSOR_VOLTAGE), PositionSensor::MANUAL.offset)
         .range(-1e3, 1e3)
-        .describe("eta, sensor voltage at the coil; from the rig's manual")
+        .describe("eta, sensor voltage at the coil; -2.8 V in the rig's manual")
 }
 
 /// Smallest voltage: the driver does not push, so that 0 is where its force ends.

@@ -25,6 +25,7 @@ mod sensor;
 mod start_delay;
 pub mod start_values;
 pub mod system;
+mod token;
 pub mod value;
 pub mod variable;
 pub mod work;
@@ -32,7 +33,7 @@ pub mod work;
 use core::fmt;
 
 pub use continuous::{ContinuousRows, ContinuousUnit, Solver};
-pub use description::{Description, Token};
+pub use description::Description;
 pub use edition::Edition;
 pub use levitated_ball_controller::LevitatedBallController;
 pub use levitated_ball_plant::LevitatedBallPlant;
@@ -46,6 +47,7 @@ pub use sampled::SampledUnit;
 pub use start_values::StartValues;
 pub use system::System;
 use thiserror::Error;
+pub use token::Token;
 use value::Readable;
 
 /// Kinds of remarks a unit makes while it runs.
@@ -120,8 +122,8 @@ pub trait Unit: Persistent + Send {
     /// Takes over tunable parameters that were set since the last step; initialisation does so, too.
     fn adopt_parameters(&mut self);
 
-    /// Whether the parameters fit together. Asked when they are all set, at the end of initialisation and when tunable
-    /// ones were set since: in between an importer may be about to set another one.
+    /// Whether the parameters fit together. Asked when they are all set, which is at the start, when tunable ones were set
+    /// since, and when they come from a file: in between an importer may be about to set another one.
     fn check_parameters(&self) -> Result<(), UnitError> {
         Ok(())
     }
@@ -129,6 +131,12 @@ pub trait Unit: Persistent + Send {
     /// Computes all calculated values and the internal state from parameters and inputs at `start_time` \[s\].
     /// May be called again after a parameter changed, until the first [`Unit::advance`].
     fn initialise(&mut self, start_time: f64) -> Result<(), UnitError>;
+
+    /// As [`Unit::initialise`], with the parameters that the unit is to run with: refused if they do not fit together.
+    fn start(&mut self, start_time: f64) -> Result<(), UnitError> {
+        self.check_parameters()?;
+        self.initialise(start_time)
+    }
 
     /// Lets `duration` \[s\], positive and finite, pass with the present inputs held.
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError>;

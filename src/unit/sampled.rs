@@ -3,7 +3,7 @@
 use super::longest_step::check_step;
 use super::sample_clock::SampleClock;
 use super::work::{LARGEST_WORK, Load, require_affordable};
-use super::{Description, Journal, UnitError};
+use super::{Description, Edition, Journal, UnitError};
 
 /// Intervals of a clock that any step may span, so that short steps need not be judged.
 const ALWAYS_AFFORDABLE: f64 = 4.0;
@@ -63,6 +63,7 @@ pub static CLOCKS: [ClockVariable; 2] = [
     },
     ClockVariable { name: "ticked", description: "A tick has set the outputs anew", is_input: false },
 ];
+
 /// Name of the parameter of every sampled unit that is the interval of `tick`.
 pub const SAMPLE_TIME: &str = "sample_time";
 
@@ -73,7 +74,6 @@ pub const TICKED: usize = 1;
 impl Description {
     /// Clocks with their value references.
     pub fn clocks(&self) -> impl Iterator<Item = (usize, &'static ClockVariable)> + use<> {
-        let count = if self.is_sampled() { CLOCKS.len() } else { 0 };
-        (self.variables.len()..).zip(&CLOCKS[..count])
+        Edition::Clocked.clocks(self)
     }
 }

@@ -47,9 +47,9 @@ pub enum StartValueError {
 /// Why a token was refused; says so without the heap, which may be what is missing.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum TokenError<'a> {
-    #[error("the token \"{0}\" is none of this library: {KnownTokens}")]
+    #[error("the token \"{}\" is none of this library: {KnownTokens}", .0.escape_debug())]
     Unknown(&'a str),
-    #[error("the token ends with \"{0}\": expected ;value reference=value")]
+    #[error("the token ends with \"{}\": expected ;value reference=value", .0.escape_debug())]
     Malformed(&'a str),
     #[error(transparent)]
     StartValue(#[from] StartValueError),

@@ -216,6 +216,23 @@ mod tests {
         assert_eq!(elsewhere, *StartValues::TABLE);
     }
 
+    /// Guards: a package whose sensor is adjusted to 0 V at 9 mm and whose descriptions say that -1.50868 V is 9 mm. A number
+    /// of the table is told as the manual's, and what is the manual's with its number.
+    #[test]
+    fn descriptions_are_true_of_shifted_starts() {
+        let both = |system: &System| {
+            [(system.plant, system.plant_starts), (system.controller, system.controller_starts)]
+        };
+        for (unit, starts) in SYSTEMS.iter().flat_map(|system| both(system)) {
+            for (name, _) in starts.iter().filter(|(_, start)| matches!(start, Start::Shifted(_))) {
+                let (_, variable) = unit.description.find(name).unwrap();
+                let text = variable.description;
+                let quotes = text.contains(&format!("{} V", variable.start));
+                assert_eq!(quotes, text.contains("rig's manual"), "{name}: {text}");
+            }
+        }
+    }
+
     #[test]
     fn starts_that_do_not_exist_are_refused() {
         let of = |start: Start| start.number(RIG.controller.description, "observer.kind");

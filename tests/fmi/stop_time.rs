@@ -2,7 +2,7 @@
 //! (FMI 2.0.5, section 2.1.6; FMI 3.0.2, section 2.3.2). And how far time goes back.
 
 use super::harness::clocked::{Choices, sampled_units};
-use super::harness::{Component, OK, all, plants};
+use super::harness::{BOTH, Component, OK, all, plants};
 
 const STOP: f64 = 0.01;
 /// Rounding of a last step of 1 ms, a billionth of it, and what is more than that \[s\].
@@ -45,6 +45,30 @@ fn steps_end_at_the_stop_time() {
             assert_eq!(unstopped.step(time, 1e-3), OK);
         }
         assert!((twin.get("time") - STOP).abs() <= 4.0 * f64::EPSILON * STOP);
+    }
+}
+
+/// Guards: the last step of a long run refused, since the sum of its steps is 0.1 ns late and more.
+#[test]
+fn importers_that_add_up_their_steps_finish() {
+    for standard in BOTH {
+        for (h, steps) in [(1e-3, 100_000), (1e-4, 1_000_000)] {
+            let component = Component::new(standard, "MagneticBearingController");
+            let stop = 100.0;
+            assert_eq!(component.enter_initialization(0.0, Some(stop)), OK);
+            assert_eq!(component.exit_initialization(), OK);
+            let mut time = 0.0;
+            for step in 1..=steps {
+                assert_eq!(component.step(time, h), OK, "step {step} of {h} s");
+                time += h;
+            }
+            assert!(time - stop > 1e-7 * h, "late by more than 1e-9 of a step: {time}");
+            // The unit went along with the importer, and its clock with the number of steps.
+            assert_eq!(component.get("time"), time);
+            assert!((component.get("tick_time") - (stop - 1e-3)).abs() < 1e-9);
+            component.recorder.clear();
+            component.assert_refused(component.step(time, 1e-3 * h), &["past the stop time"]);
+        }
     }
 }
 

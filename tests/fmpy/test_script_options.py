@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import json
 import os
+import resource
 import subprocess
 import sys
 from collections.abc import Callable
@@ -12,6 +13,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+from matplotlib.figure import Figure
 from packages import REPOSITORY, dist
 
 SCRIPTS = ["simulate_ball", "simulate_bearing", "simulate_rig"]
@@ -122,10 +124,51 @@ def test_a_seed_is_a_whole_number_that_fits(run: Callable[..., Outcome], script:
         ("/nowhere/picture.png", "expected a file in a directory that exists"),
         ("picture.xyz", "expected a name that ends with one of"),
         ("picture", "expected a name that ends with one of"),
+        ("/dev/full.png", "expected a file in a directory that exists, no device"),
+        ("n" * 300 + ".png", "expected a file in a directory that exists"),
     ],
 )
 def test_an_image_can_be_written(run: Callable[..., Outcome], script: str, image: str, message: str) -> None:
     assert_refused(run(script, "--out", image), USAGE, f"argument --out: {image!r}: {message}")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")
+def test_a_device_is_no_picture(run: Callable[..., Outcome], tmp_path: Path) -> None:
+    """Guards: a picture in place of a device or beside it."""
+    before = sorted(os.listdir("/dev"))
+    link, pipe = tmp_path / "link.png", tmp_path / "pipe.png"
+    link.symlink_to("/dev/full")
+    os.mkfifo(pipe)
+    for image in ["/dev/full.png", "/dev/../dev/full.svg", link, pipe]:
+        assert_refused(run("simulate_bearing", *SHORT, "--out", image), USAGE, "no device")
+    assert sorted(os.listdir("/dev")) == before
+    assert sorted(os.listdir(tmp_path)) == ["link.png", "pipe.png"]
+
+
+def test_a_picture_is_whole_or_the_old_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A limit on the size of files stands for a full disk."""
+    command_line = importlib.import_module("command_line")
+    old, link = tmp_path / "old.png", tmp_path / "link.png"
+    old.write_text("old")
+    link.symlink_to(old)
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (100, limits[1]))
+    try:
+        for path in [old, link, tmp_path / "new.png"]:
+            with pytest.raises(SystemExit, match="cannot write .*: File too large"):
+                command_line.save(Figure(), path)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert (old.read_text(), sorted(os.listdir(tmp_path))) == ("old", ["link.png", "old.png"])
+    command_line.save(Figure(), link)
+    assert link.is_symlink() and old.read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_name_may_be_as_long_as_the_system_has_them(tmp_path: Path) -> None:
+    """Guards: a longer name for the unfinished picture."""
+    path = tmp_path / ("n" * 251 + ".png")
+    importlib.import_module("command_line").save(Figure(), path)
+    assert path.stat().st_size > 0
 
 
 @pytest.mark.parametrize("script", SCRIPTS)
@@ -171,6 +214,7 @@ UNIT = '"unit": "MaglevRigController"'
         (f'{{{UNIT}, "values": {{"observer.bandwidth": [1]}}}}', "observer.bandwidth = [1]: expected a value"),
         (f'{{{UNIT}, "values": {{"\\u001b[2J": 1}}}}', r"has no variable '\x1b[2J'"),
         ('{"unit": "\\u001b[2J", "values": {}}', r"is for '\x1b[2J': expected a file for MaglevRigController"),
+        (f'{{{UNIT}, "values": {{"observer.kind": "\\nlinear"}}}}', r"observer.kind = \nlinear: expected one of"),
         ("[" * 100_000, "cannot read the parameter file"),
         (b"\xff\xfe{\x00}\x00", "cannot read the parameter file"),
         (" " * (1 << 20) + "{}", "larger than the 1048576 bytes"),

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use maglev_fmu::fmi::{FmiVersion, function_names};
-use maglev_fmu::unit::UNITS;
+use maglev_fmu::unit::{UNITS, editions};
 use object::pe;
 use object::write::elf::{FileHeader, Sym, Writer as ElfWriter};
 use object::write::pe::{NtHeaders, Writer as PeWriter};
@@ -17,7 +17,7 @@ pub fn all_functions() -> Vec<&'static str> {
     FmiVersion::ALL.iter().flat_map(|version| function_names(*version)).copied().collect()
 }
 
-/// A library of these functions, followed by the names of all units and something to compress.
+/// A library of these functions, followed by the names and tokens of all units and something to compress.
 pub fn library(format: BinaryFormat, architecture: Architecture, functions: &[&str]) -> Vec<u8> {
     let mut bytes = match format {
         BinaryFormat::Elf => elf(architecture, functions),
@@ -26,6 +26,7 @@ pub fn library(format: BinaryFormat, architecture: Architecture, functions: &[&s
         other => panic!("no library in the format {other:?}"),
     };
     UNITS.iter().for_each(|unit| bytes.extend(unit.description.name.bytes()));
+    editions().for_each(|(unit, edition)| bytes.extend(edition.token(unit.description).as_str().bytes()));
     bytes.extend((0..25_000u32).flat_map(|number| number.wrapping_mul(number).to_le_bytes()));
     bytes
 }

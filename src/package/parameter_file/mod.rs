@@ -25,9 +25,10 @@ use thiserror::Error;
 pub use reading::LARGEST;
 
 use super::{PackageError, WrittenFile, replace_file};
+use crate::causes::printable;
 use crate::unit::start_values::StartValueError;
 use crate::unit::variable::{Kind, Variable};
-use crate::unit::{Description, StartValues, UNITS};
+use crate::unit::{Description, StartValues, UNITS, UnitError};
 
 /// Contents of a parameter file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -48,18 +49,20 @@ pub struct ParameterFile {
 pub enum ParameterFileError {
     #[error("cannot read {}", .path.display())]
     Read { path: PathBuf, source: std::io::Error },
-    #[error("{} is no parameter file", .path.display())]
-    Syntax { path: PathBuf, source: serde_json::Error },
+    #[error("{} is no parameter file: {reason}", .path.display())]
+    Syntax { path: PathBuf, reason: String },
     #[error("{} is in UTF-16, expected UTF-8", .path.display())]
     Encoding { path: PathBuf },
     #[error("there is no unit {}, expected one of {}", name.escape_debug(), unit_names())]
     UnknownUnit { name: String },
-    #[error("{} = {value}: expected {expected}", name.escape_debug())]
+    #[error("{} = {}: expected {expected}", name.escape_debug(), printable(&value.to_string()))]
     WrongKind { name: String, value: Value, expected: String },
-    #[error("{} is given in {given}: expected {expected}", name.escape_debug())]
+    #[error("{} is given in {}: expected {expected}", name.escape_debug(), printable(&given.to_string()))]
     WrongUnit { name: String, given: Value, expected: String },
     #[error(transparent)]
     StartValue(#[from] StartValueError),
+    #[error(transparent)]
+    DoNotFit(#[from] UnitError),
     #[error(transparent)]
     Write(#[from] PackageError),
 }
@@ -81,7 +84,9 @@ impl ParameterFile {
             values.insert(name.to_owned(), number(variable, value));
             units.insert(name.to_owned(), unit_text(variable, value).into());
         }
-        Ok(Self { unit: description.name.to_owned(), values, units, provenance })
+        let file = Self { unit: description.name.to_owned(), values, units, provenance };
+        file.start_values()?;
+        Ok(file)
     }
 
     pub fn write(&self, path: &Path) -> Result<WrittenFile, ParameterFileError> {
@@ -90,13 +95,13 @@ impl ParameterFile {
         Ok(WrittenFile { path: path.to_owned(), size: text.len() })
     }
 
-    /// The unit's table and the values, checked.
+    /// The unit's table and the values, checked by themselves and whether they fit together.
     pub fn start_values(&self) -> Result<(&'static Description, StartValues), ParameterFileError> {
-        let description = UNITS
+        let unit = UNITS
             .iter()
-            .map(|unit| unit.description)
-            .find(|description| description.name == self.unit)
+            .find(|unit| unit.description.name == self.unit)
             .ok_or_else(|| ParameterFileError::UnknownUnit { name: self.unit.clone() })?;
+        let description = unit.description;
         let mut start_values = StartValues::default();
         for (name, value) in &self.values {
             let (variable, number) = checked(description, name, value)?;
@@ -112,6 +117,9 @@ impl ParameterFile {
                 }
             }
         }
+        let mut unit = (unit.create)();
+        start_values.apply(&mut *unit);
+        unit.check_parameters()?;
         Ok((description, start_values))
     }
 }
@@ -245,12 +253,18 @@ mod tests {
     #[test]
     fn names_are_printed_escaped() {
         let name = "\u{1b}[31m\u{202e}gain\n";
+        let escaped = r"\u{1b}[31m\u{202e}gain\n";
         let unknown = ParameterFile { unit: name.to_owned(), ..file(json!({}), json!({})) };
         for message in [
             file(json!({ name: 1 }), json!({})).start_values().unwrap_err().to_string(),
             unknown.start_values().unwrap_err().to_string(),
         ] {
-            assert!(message.contains(r"\u{1b}[31m\u{202e}gain\n"), "{message}");
+            assert!(message.contains(escaped), "{message}");
+        }
+        // Values that are texts: the wrong item and the wrong unit. JSON escapes the line break, not the direction.
+        for values in [json!({ "observer.kind": name }), json!({ "sample_time": name })] {
+            let message = file(values, json!({})).start_values().unwrap_err().to_string();
+            assert!(message.contains(r"\u{202e}gain\n"), "{message}");
         }
     }
 }

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::{ParameterFile, ParameterFileError};
+use crate::causes::with_causes;
 use crate::file;
 
 /// Far more than all variables of a unit with a long story in the provenance \[byte\].
@@ -20,15 +21,16 @@ impl ParameterFile {
             return Err(ParameterFileError::Encoding { path: path.to_owned() });
         }
         let text = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&bytes);
-        serde_json::from_slice(text)
-            .map_err(|source| ParameterFileError::Syntax { path: path.to_owned(), source })
+        serde_json::from_slice(text).map_err(|error| ParameterFileError::Syntax {
+            path: path.to_owned(),
+            reason: with_causes(&error),
+        })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::causes::with_causes;
     use proptest::prelude::*;
     use serde_json::json;
     use std::fs;
@@ -67,6 +69,15 @@ mod tests {
         }
         let twice = r#"{"unit": "A", "unit": "B", "values": {}}"#;
         assert!(with_causes(&read_bytes(twice.as_bytes()).unwrap_err()).contains("duplicate field"));
+    }
+
+    /// Guards: an unknown key of the file itself that breaks the line of the message.
+    #[test]
+    fn unknown_keys_are_printed_escaped() {
+        let text = r#"{"unit": "MaglevRigController", "values": {}, "a\nerror: b\u001b[2J\u202e": 1}"#;
+        let message = with_causes(&read_bytes(text.as_bytes()).unwrap_err());
+        assert!(message.contains(r"unknown field `a\nerror: b\u{1b}[2J\u{202e}`"), "{message}");
+        assert!(!message.contains('\n'), "{message}");
     }
 
     /// Guards: reading /dev/zero until the memory is full.

@@ -201,10 +201,9 @@ variable_table! {
     GRAVITY = gravity();
 }
 
-pub static DESCRIPTION: Description = Description {
-    name: "LevitatedBallController",
-    summary: "Sensorless observers and feedback-linearising law for a levitated ball",
-    documentation: &[
+pub static DESCRIPTION: Description = Description::new("LevitatedBallController", &VARIABLES)
+    .summary("Sensorless observers and feedback-linearising law for a levitated ball")
+    .documentation(&[
         "Levitates the ball without a position sensor: estimates flux, velocity and position from current and voltage and \
          feeds the feedback-linearising law with them, after Sensorless Control of the Levitated Ball, arXiv 1811.07732.",
         "The available text of the paper has lost its formulas and numbers. Reconstructed from its words: the observers of \
@@ -224,8 +223,5 @@ pub static DESCRIPTION: Description = Description {
          force biases all estimates. observer.startup_hold freezes the offset until the prefilters have forgotten that \
          the ball may not have been at rest; it costs time in which a wrong offset moves the ball.",
         "An observer whose numbers run away starts again from its initial flux. The outputs are always finite.",
-    ],
-    variables: &VARIABLES,
-    step_size: 1e-4,
-    stop_time: 5.0,
-};
+    ])
+    .experiment(1e-4, 5.0);

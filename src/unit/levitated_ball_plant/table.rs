@@ -150,10 +150,9 @@ variable_table! {
         .describe("Seed of the sensor's noise; the same seed gives the same run on every platform");
 }
 
-pub static DESCRIPTION: Description = Description {
-    name: "LevitatedBallPlant",
-    summary: "Steel ball levitated by an electromagnet, one degree of freedom, voltage driven",
-    documentation: &[
+pub static DESCRIPTION: Description = Description::new("LevitatedBallPlant", &VARIABLES)
+    .summary("Steel ball levitated by an electromagnet, one degree of freedom, voltage driven")
+    .documentation(&[
         "Steel ball below an electromagnet, equation (1) of Sensorless Control of the Levitated Ball, arXiv 1811.07732: \
          lam' = u - R i, y' = p / m, p' = lam^2 / (2 k) - m g + force, i = (c - y) lam / k. The available text of the \
          paper has lost its formulas and numbers: the equations are those of the book it refers to (Ortega, Loria, \
@@ -168,8 +167,5 @@ pub static DESCRIPTION: Description = Description {
          changes at events only. In co-simulation voltage and force may have a slope (input derivative of order 1, \
          FMI 2.0).",
         "Not in the paper: the disturbing force, the stops and the sensor model.",
-    ],
-    variables: &VARIABLES,
-    step_size: 1e-4,
-    stop_time: 5.0,
-};
+    ])
+    .experiment(1e-4, 5.0);

@@ -135,7 +135,7 @@ variable_table! {
     REFERENCE = Variable::input("reference", &SENSOR_VOLTAGE_QUANTITY)
         .start(OPERATING_SENSOR_VOLTAGE)
         .range(-1e6, 1e6)
-        .describe("r, wanted sensor voltage; -1.50868 V is 9 mm");
+        .describe("r, wanted sensor voltage; sensor_gain x + sensor_offset is a distance x from the coil");
     VOLTAGE_APPLIED = Variable::input("voltage_applied", &DRIVER_VOLTAGE)
         .start(OPERATING_VOLTAGE)
         .range(-1e6, 1e6)
@@ -262,10 +262,9 @@ variable_table! {
     SENSOR_OFFSET = sensor_offset();
 }
 
-pub static DESCRIPTION: Description = Description {
-    name: "MaglevRigController",
-    summary: "Extended state observers, PID and disturbance rejection for the maglev rig Feedback 33-942S",
-    documentation: &[
+pub static DESCRIPTION: Description = Description::new("MaglevRigController", &VARIABLES)
+    .summary("Extended state observers, PID and disturbance rejection for the maglev rig Feedback 33-942S")
+    .documentation(&[
         "Observers and control of a ball below a coil, from the voltage of its position sensor: A. J. Humaidi et al., \
          Experimental Design and Verification of Extended State Observers for Magnetic Levitation System Based on PSO, \
          Open Electr. Electron. Eng. J. 12, 110-120, 2018.",
@@ -288,8 +287,5 @@ pub static DESCRIPTION: Description = Description {
          input gain 1 has the wrong sign and loses the ball. It needs no operating voltage.",
         "An observer that diverges, as one with too large gains by Euler does, starts anew from the measurement and \
          counts that in observer.restarts; the outputs are finite and the voltage is within its limits, always.",
-    ],
-    variables: &VARIABLES,
-    step_size: 1e-3,
-    stop_time: 10.0,
-};
+    ])
+    .experiment(1e-3, 10.0);

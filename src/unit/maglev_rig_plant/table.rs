@@ -166,20 +166,19 @@ variable_table! {
         .describe("Step of the sensor's output, 0 for none");
     SENSOR_MINIMUM = Variable::tunable("sensor.minimum", Kind::Real(&SENSOR_VOLTAGE_QUANTITY), -3.75)
         .range(-1e3, 0.0)
-        .describe("Smallest sensor voltage; -3.75 V in the rig's manual, which no ball can reach");
+        .describe("Smallest sensor voltage, which no ball can reach; -3.75 V with the offset of the rig's manual");
     SENSOR_MAXIMUM = Variable::tunable("sensor.maximum", Kind::Real(&SENSOR_VOLTAGE_QUANTITY), 1.25)
         .range(0.0, 1e3)
-        .describe("Largest sensor voltage; 1.25 V in the rig's manual, 28 mm");
+        .describe("Largest sensor voltage, 28 mm; 1.25 V with the offset of the rig's manual");
     SENSOR_SAMPLE_TIME = sample_time();
     SENSOR_SEED = Variable::parameter("sensor.seed", Kind::Integer, 1.0)
         .range(0.0, i32::MAX as f64)
         .describe("Seed of the sensor's noise; the same seed gives the same run on every platform");
 }
 
-pub static DESCRIPTION: Description = Description {
-    name: "MaglevRigPlant",
-    summary: "Maglev rig Feedback 33-942S: a ball below a coil with its current driver and position sensor",
-    documentation: &[
+pub static DESCRIPTION: Description = Description::new("MaglevRigPlant", &VARIABLES)
+    .summary("Maglev rig Feedback 33-942S: a ball below a coil with its current driver and position sensor")
+    .documentation(&[
         "Steel ball below an electromagnet: A. J. Humaidi et al., Experimental Design and Verification of Extended State \
          Observers for Magnetic Levitation System Based on PSO, Open Electr. Electron. Eng. J. 12, 110-120, 2018, \
          equations (3) to (7): x'' = g - K i^2 / (m x^2) + force / m with i = k1 u. The paper's equations are pictures; \
@@ -195,8 +194,5 @@ pub static DESCRIPTION: Description = Description {
         "Printed: m, g, K, k1. From the rig's manual, by way of a public virtual laboratory: sensor gain, offset and \
          range, operating point 9 mm, limits of the voltage (their negative half is left out: the force goes with the \
          square, so that negative voltages attract, too). Assumed: the stops. Not modelled: the driver's current loop.",
-    ],
-    variables: &VARIABLES,
-    step_size: 1e-3,
-    stop_time: 10.0,
-};
+    ])
+    .experiment(1e-3, 10.0);

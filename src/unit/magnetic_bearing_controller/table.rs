@@ -190,10 +190,9 @@ variable_table! {
     SATURATION_FLUX = saturation_flux();
 }
 
-pub static DESCRIPTION: Description = Description {
-    name: "MagneticBearingController",
-    summary: "Observers and nonlinear control laws for a flux-controlled active magnetic bearing",
-    documentation: &[
+pub static DESCRIPTION: Description = Description::new("MagneticBearingController", &VARIABLES)
+    .summary("Observers and nonlinear control laws for a flux-controlled active magnetic bearing")
+    .documentation(&[
         "Estimates velocity and flux of the bearing from its position and feeds a control law with them: \
          A. Mystkowski, Ü. Kotta, V. Kaparin, Newton observer for a nonlinear flux-controlled AMB system, \
          Proc. Estonian Acad. Sci. 67(1), 61-72, 2018, sections 3 and 4.",
@@ -223,8 +222,5 @@ pub static DESCRIPTION: Description = Description {
          the bearing from bias_flux and saturation_flux, as the observers do.",
         "An iteration that yields nothing finite is dropped: the last finite estimate stays and observer.converged \
          is false.",
-    ],
-    variables: &VARIABLES,
-    step_size: 1e-3,
-    stop_time: 10.0,
-};
+    ])
+    .experiment(1e-3, 10.0);

@@ -97,10 +97,9 @@ variable_table! {
         .describe("How a step is solved; of no effect in model exchange");
 }
 
-pub static DESCRIPTION: Description = Description {
-    name: "MagneticBearingPlant",
-    summary: "Flux-controlled active magnetic bearing with one degree of freedom",
-    documentation: &[
+pub static DESCRIPTION: Description = Description::new("MagneticBearingPlant", &VARIABLES)
+    .summary("Flux-controlled active magnetic bearing with one degree of freedom")
+    .documentation(&[
         "Rotor between two electromagnets, equation (3) of A. Mystkowski, Ü. Kotta, V. Kaparin, Newton observer for \
          a nonlinear flux-controlled AMB system, Proc. Estonian Acad. Sci. 67(1), 61-72, 2018: x1' = x2, \
          x2' = epsilon x3 + x3 |x3|, x3' = u. The paper calls its variables normalised; the units here are those of \
@@ -114,11 +113,8 @@ pub static DESCRIPTION: Description = Description {
          displacement itself there. voltage_measured is the voltage that acts. In co-simulation the voltage may have a \
          slope (input derivative of order 1, FMI 2.0); the step is then solved exactly, too, whatever map is.",
         "Not in the paper: the sensor model and the process noise, which are off at the start values.",
-    ],
-    variables: &VARIABLES,
-    step_size: 1e-3,
-    stop_time: 10.0,
-};
+    ])
+    .experiment(1e-3, 10.0);
 
 /// Stream of the seed, another one than the sensor's.
 const PROCESS_STREAM: u64 = 2;

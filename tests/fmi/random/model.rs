@@ -20,6 +20,8 @@ pub struct Model {
     pub start: f64,
     pub stop: Option<f64>,
     pub time: f64,
+    /// By how much the sum of the steps so far may be off by rounding \[s\].
+    pub drift: f64,
     /// Times of the last EnterEventMode and of the last two CompletedIntegratorStep.
     pub last_event: f64,
     pub completed: [f64; 2],
@@ -49,6 +51,7 @@ impl Model {
             start: 0.0,
             stop: None,
             time: 0.0,
+            drift: 0.0,
             last_event: f64::NEG_INFINITY,
             completed: [f64::NEG_INFINITY; 2],
             has_set: false,
@@ -116,6 +119,9 @@ impl Model {
             Call::SetClocks { values, .. } => self.is_clock_set |= values.iter().any(|value| *value != 0),
             _ => {}
         }
+        if matches!(call, Call::SetTime(_) | Call::Step { .. } | Call::Activate { .. }) {
+            self.drift += f64::EPSILON * self.time.abs();
+        }
     }
 
     /// Whether initialisation may refuse what was set, or a start time so far away that ticks cannot be counted there.
@@ -130,7 +136,8 @@ impl Model {
 
     /// Whether `time` lies after the stop time by more than rounding makes of the `way` that leads there \[s\].
     pub fn is_past_stop(&self, time: f64, way: f64) -> bool {
-        self.stop.is_some_and(|stop| time - stop > 2e-9 * way + 1e-14 * time.abs())
+        let rounding = (2e-9 * way).max((2.0 * self.drift).min(0.02 * way));
+        self.stop.is_some_and(|stop| time - stop > rounding + 1e-14 * time.abs())
     }
 
     /// Goes on from where a state was saved.
@@ -143,6 +150,7 @@ impl Model {
         self.start = experiment.start;
         self.stop = experiment.stop;
         self.time = experiment.start;
+        self.drift = 0.0;
     }
 
     fn follow_plain(&mut self, function: &str, choices: &Choices, initial_sample_time: f64) {
