@@ -96,16 +96,18 @@ impl Sensor {
 
     /// Moves a plant through a step over `duration` \[s\]: up to the last reading in it, the only one that can be seen after
     /// the step, and from there to its end. Readings lie at the end, or at the multiples of the sample time, the end
-    /// included. Returns the states at the end and at that reading, none without one.
+    /// included. Returns the state at the end and what the sensor sees at that reading, none without one.
     ///
-    /// `moved` gives what becomes of a state from a time since the step's begin on, in a time, both in s.
+    /// `moved` gives what becomes of a state from a time since the step's begin on, in a time, both in s; `seen` is what
+    /// the sensor measures of a state.
     #[inline]
     pub(super) fn move_through<S: Copy>(
         &self,
         start: S,
         duration: f64,
         mut moved: impl FnMut(S, f64, f64) -> Result<S, UnitError>,
-    ) -> Result<(S, Option<S>), UnitError> {
+        seen: impl Fn(S) -> f64,
+    ) -> Result<(S, Option<f64>), UnitError> {
         let last_reading = match &self.clock {
             None => Some(duration),
             Some(clock) => last_tick_through(clock, duration),
@@ -118,10 +120,10 @@ impl Sensor {
             if end >= duration {
                 break;
             }
-            before_end = Some(state);
+            before_end = Some(seen(state));
             (begin, end) = (end, duration);
         }
-        Ok((state, before_end.or(last_reading.map(|_| state))))
+        Ok((state, before_end.or(last_reading.map(|_| seen(state)))))
     }
 
     /// Goes through the readings of a step up to the last one, which is still to be read.

@@ -145,10 +145,12 @@ impl Unit for LevitatedBallPlant {
         };
         let [position, velocity, flux] = self.state();
         let motion = (State { position, velocity, flux }, self.contact);
-        let ((state, contact), sensed) =
-            self.sensor.move_through(motion, duration, |motion, time, duration| {
-                self.moved(motion, begin.after(slope, time), duration)
-            })?;
+        let ((state, contact), seen) = self.sensor.move_through(
+            motion,
+            duration,
+            |motion, time, duration| self.moved(motion, begin.after(slope, time), duration),
+            |(state, _)| self.ball.current(state.position, state.flux),
+        )?;
         if contact != self.contact && journal.wants(Topic::Events) {
             note_contact(contact, journal);
         }
@@ -158,8 +160,8 @@ impl Unit for LevitatedBallPlant {
         self.values[VOLTAGE_MEASURED] = begin.voltage + 0.5 * slope.voltage * duration;
         self.evaluate();
         self.sensor.skip_to_last(duration, self.values[SENSOR_NOISE]);
-        if let Some((State { position, flux, .. }, _)) = sensed {
-            self.read_sensor(self.ball.current(position, flux));
+        if let Some(current) = seen {
+            self.read_sensor(current);
         }
         Ok(())
     }

@@ -198,11 +198,15 @@ impl Unit for MaglevRigPlant {
         let force_end = end_of_ramp(&VARIABLES[FORCE], force, force_slope, duration)?;
         let [position, velocity] = self.state();
         let motion = (State { position, velocity }, self.contact);
-        let ((state, contact), sensed) =
-            self.sensor.move_through(motion, duration, |motion, begin, duration| {
+        let ((state, contact), seen) = self.sensor.move_through(
+            motion,
+            duration,
+            |motion, begin, duration| {
                 let inputs = (voltage + voltage_slope * begin, force + force_slope * begin);
                 self.moved(motion, inputs, duration)
-            })?;
+            },
+            |(state, _)| self.sensor_voltage(state.position),
+        )?;
         if contact != self.contact && journal.wants(Topic::Events) {
             note_contact(self.values[TIME] + duration, contact, journal);
         }
@@ -216,8 +220,8 @@ impl Unit for MaglevRigPlant {
         self.set_state([state.position, state.velocity], contact);
         self.evaluate();
         self.sensor.skip_to_last(duration, self.values[SENSOR_NOISE]);
-        if let Some((State { position, .. }, _)) = sensed {
-            self.read_sensor(self.sensor_voltage(position));
+        if let Some(voltage) = seen {
+            self.read_sensor(voltage);
         }
         Ok(())
     }

@@ -231,10 +231,12 @@ impl Unit for MagneticBearingPlant {
         require_affordable(duration, [self.sensor.load()])?;
         let (voltage, slope) = (self.values[VOLTAGE_INPUT], self.voltage_slope);
         let end = end_of_ramp(&VARIABLES[VOLTAGE_INPUT], voltage, slope, duration)?;
-        let (mut state, sensed) =
-            self.sensor.move_through(self.state(), duration, |state, begin, duration| {
-                self.moved(state, voltage + slope * begin, duration)
-            })?;
+        let (mut state, seen) = self.sensor.move_through(
+            self.state(),
+            duration,
+            |state, begin, duration| self.moved(state, voltage + slope * begin, duration),
+            |state| state.position,
+        )?;
         if self.values[PROCESS_FLUX_NOISE] > 0.0 {
             state.flux += self.values[PROCESS_FLUX_NOISE] * self.process_noise.sample();
         }
@@ -244,7 +246,7 @@ impl Unit for MagneticBearingPlant {
         self.settle_flux_sign();
         self.evaluate();
         self.sensor.skip_to_last(duration, self.values[SENSOR_NOISE]);
-        if let Some(State { position, .. }) = sensed {
+        if let Some(position) = seen {
             self.read_sensor(position);
         }
         Ok(())
