@@ -234,6 +234,7 @@ TASKS = [
         packages=CLOSED,
         limit=Limit("fmi2DoStep failed", "takes a hundredth of the stop time, 10 ms, for the step, which the units refuse"),
     ),
+    Task("FMPy", "simulate", simulate_with_fmpy, packages=TWO, limit=Limit("Failed to validate SystemStructure.ssd", "SSP 2.0")),
     Task("ecospy", "simulate", simulate_with_ecos, packages=CLOSED),
     Task("ecospy", "simulate", simulate_with_ecos, packages=DRIVEN, limit=Limit("No element named: ", "systems with connectors of their own")),
     Task("ecospy", "simulate", simulate_with_ecos, packages=TWO, limit=Limit("Unsupported SSP version", "SSP 2.0")),

@@ -4,7 +4,7 @@ use super::CallError;
 use serde::{Deserialize, Serialize};
 
 /// Rounding that importers accumulate between two communication points, in units in the last place.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
+pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Share of a step by which its begin may miss the end of the last step, and its end the stop time, by rounding.
 const TOLERANCE: f64 = 1e-9;

@@ -1,7 +1,8 @@
 //! Times as fractions, as FMI 3.0 wants them for clocks.
 
 /// The first convergent of the continued fraction of `value` whose quotient is exactly `value`, which is not negative:
-/// 1/1000 for 0.001, although no double is a thousandth. None if 64 bits are too few.
+/// 1/1000 for 0.001, although no double is a thousandth; for a decimal number of many digits a shorter fraction that is
+/// the same double. None if 64 bits are too few.
 ///
 /// Euclid's algorithm on the double itself, a whole number over a power of two.
 pub(super) fn fraction(value: f64) -> Option<(u64, u64)> {

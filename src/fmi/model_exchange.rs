@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::communication::ROUNDING;
 use super::event_mode::EventEnd;
 use super::{CallError, Instance, Interface, Phase};
 use crate::unit::continuous::nominal;
@@ -34,8 +35,6 @@ impl EarliestTime {
     }
 
     fn check(&self, time: f64) -> Result<(), CallError> {
-        /// Rounding of importers, in units in the last place.
-        const ROUNDING: f64 = 16.0 * f64::EPSILON;
         if time >= self.time - ROUNDING * self.time.abs() {
             return Ok(());
         }

@@ -61,7 +61,8 @@ pub static BEARING: System = System {
     actuation: &[("voltage", "voltage")],
     plant_starts: &[],
     controller_starts: &[HEARS_APPLIED_VOLTAGE],
-    remark: "",
+    remark: " The sample time of 1 ms has to be a multiple of the step, as it is of 0.5 ms: otherwise ticks lie within steps \
+        and the observer takes a position for that of a later time, which loses the rotor.",
 };
 
 pub static BALL: System = System {

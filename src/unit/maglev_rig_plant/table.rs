@@ -66,7 +66,7 @@ variable_table! {
             Dependency::dependent("voltage_max"),
         ])
         .describe("i = k1 u, coil current under voltage_measured: the mean over the last step, in model exchange the \
-            one that flows");
+            one that flows; 0 before the first step, when no voltage has acted");
     SENSOR_VOLTAGE = Variable::output("sensor_voltage", &SENSOR_VOLTAGE_QUANTITY)
         .initially_from(&["initial.position", "upper_stop", "lower_stop", "sensor_gain", "sensor_offset"])
         .depends_on(&[
