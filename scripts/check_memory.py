@@ -6,6 +6,7 @@ python scripts/check_memory.py
 
 from __future__ import annotations
 
+import argparse
 import json
 import re
 import subprocess
@@ -29,6 +30,7 @@ def test_program() -> str:
 
 
 def main() -> None:
+    argparse.ArgumentParser(description=__doc__.split("\n")[0]).parse_args()
     command = [*VALGRIND, test_program(), "--ignored", "--exact", TEST, "--nocapture", "--test-threads=1"]
     run = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     print(run.stdout)

@@ -189,8 +189,7 @@ fn equal_prefilters_are_refused() {
     controller.initialise(0.0).unwrap();
     let refused = controller.check_parameters().unwrap_err();
     assert!(matches!(refused, UnitError::Equal { value: 100.0, .. }));
-    let expected =
-        "observer.prefilter[1] and observer.prefilter[2] are both 100 1/s: expected two different numbers";
+    let expected = "observer.prefilter[1] and observer.prefilter[2] are both 100 1/s: expected numbers that differ by a millionth or more";
     assert_eq!(refused.to_string(), expected);
 }
 

@@ -56,6 +56,20 @@ fn a_full_standard_output_is_an_error() {
     }
 }
 
+/// Guards: exit status 0 where standard output is a file that was opened for reading.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_standard_output_that_cannot_be_written_is_an_error() {
+    let directory = directory_with_library();
+    for arguments in COMMANDS.iter().filter(|arguments| !arguments[0].starts_with('-')) {
+        let readable = File::open("/etc/passwd").unwrap();
+        let output = maglev_fmu(directory.path(), arguments).stdout(readable).output().unwrap();
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}");
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert!(message.contains("error: cannot write to standard output"), "{arguments:?}: {message}");
+    }
+}
+
 /// Guards: a panic, hence status 101, while the error is printed.
 #[cfg(target_os = "linux")]
 #[test]

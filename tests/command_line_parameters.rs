@@ -47,6 +47,15 @@ fn maglev_fmu(directory: &Path, arguments: &[String]) -> (Option<i32>, String) {
     (output.status.code(), String::from_utf8(output.stderr).unwrap())
 }
 
+/// Guards: the last one taken without a word.
+#[test]
+fn a_name_given_twice_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let arguments = ["trace", "ball", "--steps", "1", "--plant", "mass=0.1", "--plant", "mass=0.2"];
+    let (status, message) = maglev_fmu(directory.path(), &arguments.map(str::to_owned));
+    assert_eq!((status, message.as_str()), (Some(1), "error: mass is given twice\n"));
+}
+
 /// Guards: a key that writes a line of its own into the message.
 #[test]
 fn keys_are_told_in_one_line() {

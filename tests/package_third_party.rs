@@ -69,6 +69,30 @@ fn every_linked_crate_is_listed_with_a_text() {
     assert!(texts.contains("Permission is hereby granted") && texts.contains("Apache License"));
 }
 
+/// Guards: code that comes with the compiler and stands in no tree of dependencies. The program has the same part of the
+/// standard library as the shared one, and where it was compiled stands in its messages.
+#[test]
+fn crates_within_the_standard_library_are_listed() {
+    const PLACE: &[u8] = b"/rust/deps/";
+    let program = fs::read(env!("CARGO_BIN_EXE_maglev-fmu")).unwrap();
+    let found: BTreeSet<String> = program
+        .windows(PLACE.len())
+        .enumerate()
+        .filter(|(_, window)| *window == PLACE)
+        .map(|(place, _)| {
+            let rest = &program[place + PLACE.len()..];
+            let end = rest.iter().position(|byte| *byte == b'/').unwrap();
+            let name = String::from_utf8_lossy(&rest[..end]).into_owned();
+            name.rsplit_once('-').expect("a version").0.to_owned()
+        })
+        .collect();
+    assert!(found.contains("rustc-demangle"), "{found:?}");
+    let text = fs::read_to_string(root().join(THIRD_PARTY_PATH)).unwrap();
+    for name in found {
+        assert!(text.contains(&format!("Rust standard library: {name} ")), "{name}");
+    }
+}
+
 #[test]
 fn sources_without_a_manifest_are_refused() {
     let directory = tempfile::tempdir().unwrap();

@@ -2,7 +2,7 @@
 
 use std::error::Error;
 use std::fmt;
-use std::fs;
+use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -21,9 +21,19 @@ impl OutputError {
     }
 }
 
+/// Standard output as a file: the library's own handle takes one that cannot be written for one that nobody wants to read.
+fn standard_output() -> io::Result<File> {
+    #[cfg(unix)]
+    let handle = std::os::fd::AsFd::as_fd(&io::stdout()).try_clone_to_owned()?;
+    #[cfg(windows)]
+    let handle = std::os::windows::io::AsHandle::as_handle(&io::stdout()).try_clone_to_owned()?;
+    Ok(handle.into())
+}
+
 /// Prints a line.
 pub fn say(line: fmt::Arguments<'_>) -> Result<(), OutputError> {
-    Ok(writeln!(io::stdout(), "{line}")?)
+    // At once, so that lines are whole.
+    Ok(standard_output()?.write_all(format!("{line}\n").as_bytes())?)
 }
 
 /// Tells the user about a file.
@@ -46,11 +56,11 @@ pub fn with_room_beside(path: PathBuf) -> Result<PathBuf, String> {
 }
 
 /// Many lines, written in blocks.
-pub struct Lines(BufWriter<io::StdoutLock<'static>>);
+pub struct Lines(BufWriter<File>);
 
 impl Lines {
-    pub fn new() -> Self {
-        Self(BufWriter::new(io::stdout().lock()))
+    pub fn new() -> Result<Self, OutputError> {
+        Ok(Self(BufWriter::new(standard_output()?)))
     }
 
     pub fn say(&mut self, line: fmt::Arguments<'_>) -> Result<(), OutputError> {

@@ -1,5 +1,6 @@
 //! `maglev-fmu trace`
 
+use std::collections::BTreeSet;
 use std::error::Error;
 
 use clap::Args;
@@ -47,13 +48,13 @@ fn seconds(text: &str) -> Result<f64, String> {
 impl Trace {
     pub fn run(&self) -> Result<(), Box<dyn Error>> {
         let (mut plant, mut controller) = ((self.system.plant.create)(), (self.system.controller.create)());
-        self.plant.iter().try_for_each(|assignment| assign(&mut *plant, assignment))?;
-        self.controller.iter().try_for_each(|assignment| assign(&mut *controller, assignment))?;
+        assign_all(&mut *plant, &self.plant)?;
+        assign_all(&mut *controller, &self.controller)?;
         plant.start(0.0)?;
         controller.start(0.0)?;
         let step_size = self.step_size.unwrap_or_else(|| *value(&mut *controller, "sample_time"));
         let (plant_outputs, controller_outputs) = (real_outputs(&*plant), real_outputs(&*controller));
-        let mut lines = Lines::new();
+        let mut lines = Lines::new()?;
         lines.say(format_args!(
             "{}",
             [header("plant", &plant_outputs), header("controller", &controller_outputs)].join(",")
@@ -100,6 +101,19 @@ fn pass_on(source: &mut dyn Unit, target: &mut dyn Unit, wires: &[(&str, &str)])
 fn value<'a>(unit: &'a mut dyn Unit, name: &str) -> &'a mut f64 {
     let (reference, _) = unit.description().find(name).expect("a name from the table");
     &mut unit.values_mut()[reference]
+}
+
+/// Carries out each `NAME=VALUE`; no name may be given twice.
+fn assign_all(unit: &mut dyn Unit, assignments: &[String]) -> Result<(), Box<dyn Error>> {
+    let mut names = BTreeSet::new();
+    for assignment in assignments {
+        let name = assignment.split('=').next().unwrap_or_default();
+        if !names.insert(name) {
+            return Err(format!("{name} is given twice").into());
+        }
+        assign(unit, assignment)?;
+    }
+    Ok(())
 }
 
 /// Carries out `NAME=VALUE`.

@@ -6,6 +6,9 @@ use serde::{Deserialize, Serialize};
 /// Rounding that importers accumulate between two communication points, in units in the last place.
 pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
+/// Half a unit in the last place of 1.
+const HALF_A_UNIT: f64 = 0.5 * f64::EPSILON;
+
 /// Share of a step by which its begin may miss the end of the last step, and its end the stop time, by rounding.
 const TOLERANCE: f64 = 1e-9;
 
@@ -75,9 +78,12 @@ impl CommunicationPoint {
             });
         }
         let gap = point - self.now;
-        let passes = if gap.abs() <= ROUNDING * point.abs().max(self.now.abs()).max(step_size) {
+        // Times round by their own size and that of those before, be the step as long as it likes.
+        let largest_time = point.abs().max(self.now.abs());
+        let span = step_size.min(largest_time.max(self.drift / HALF_A_UNIT));
+        let passes = if gap.abs() <= ROUNDING * largest_time.max(span) {
             step_size
-        } else if gap.abs() <= TOLERANCE * step_size {
+        } else if gap.abs() <= TOLERANCE * span {
             step_size + gap
         } else {
             return Err(CallError::TimeDoesNotFollow { got: point, expected: self.now });
@@ -111,7 +117,7 @@ impl CommunicationPoint {
     #[inline]
     pub fn move_to(&mut self, time: f64) {
         self.now = time;
-        self.drift += 0.5 * f64::EPSILON * time.abs();
+        self.drift += HALF_A_UNIT * time.abs();
     }
 }
 
@@ -133,9 +139,20 @@ mod tests {
     fn a_gap_beyond_rounding_does_not_follow_however_long_the_step() {
         let mut point = CommunicationPoint::new(0.0, None);
         point.move_to(1e-3);
-        for (time, step_size) in [(0.9, 1000.0), (1.001e-3, 1e-3), (0.999e-3, 1e-3), (1e-3 + 1e-11, 1e-3)] {
+        let long = [1000.0, 9e8, 1e12, 1e300].map(|step_size| (0.9, step_size));
+        let short = [(1.001e-3, 1e-3), (0.999e-3, 1e-3), (1e-3 + 1e-11, 1e-3), (0.0, 1e12)];
+        for (time, step_size) in long.into_iter().chain(short) {
             let refused = point.duration(time, step_size);
             assert_eq!(refused, Err(CallError::TimeDoesNotFollow { got: time, expected: 1e-3 }));
+        }
+        // Where time comes to 0, sums have rounded by more than the time itself.
+        let mut point = CommunicationPoint::new(-1.0, None);
+        for k in 1..=10 {
+            let time = point.now();
+            assert_eq!(point.duration(time, 0.1), Ok(0.1));
+            point.move_to(time + 0.1);
+            let multiple = -1.0 + f64::from(k) * 0.1;
+            assert!((point.duration(multiple, 0.1).unwrap() - 0.1).abs() < 1e-15, "{multiple}");
         }
     }
 

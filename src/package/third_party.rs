@@ -3,6 +3,7 @@
 //! Written from the tree of dependencies as Cargo resolves it, and from the texts as the crates carry them, so that it
 //! is complete whatever comes in by way of others.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -25,13 +26,29 @@ const ACCEPTED: [(&str, &[&str]); 2] = [
 
 /// Part of every library, and of no tree of dependencies.
 const STANDARD_LIBRARY: Crate<'_> = Crate {
-    name: "Rust standard library",
+    name: Cow::Borrowed("Rust standard library"),
     version: String::new(),
     declared: "MIT OR Apache-2.0",
     license: "MIT",
     repository: "https://github.com/rust-lang/rust",
 };
 const STANDARD_LIBRARY_COPYRIGHT: &str = "Copyright (c) The Rust Project Contributors";
+
+/// Crates that the standard library brings along in compiled form, which no tree of dependencies has either; their versions
+/// are those of the compiler that built the library.
+pub const STANDARD_LIBRARY_CRATES: [(&str, &str, &str); 9] = [
+    ("addr2line", "Apache-2.0 OR MIT", "https://github.com/gimli-rs/addr2line"),
+    ("adler2", "0BSD OR MIT OR Apache-2.0", "https://github.com/oyvindln/adler2"),
+    ("cfg-if", "MIT OR Apache-2.0", "https://github.com/rust-lang/cfg-if"),
+    ("gimli", "MIT OR Apache-2.0", "https://github.com/gimli-rs/gimli"),
+    ("hashbrown", "MIT OR Apache-2.0", "https://github.com/rust-lang/hashbrown"),
+    ("libc", "MIT OR Apache-2.0", "https://github.com/rust-lang/libc"),
+    ("miniz_oxide", "MIT OR Zlib OR Apache-2.0", "https://github.com/Frommi/miniz_oxide"),
+    ("object", "Apache-2.0 OR MIT", "https://github.com/gimli-rs/object"),
+    ("rustc-demangle", "MIT/Apache-2.0", "https://github.com/rust-lang/rustc-demangle"),
+];
+/// Licence under which all of those are taken, and words of its text.
+const THEIR_LICENSE: (&str, &str) = ("Apache-2.0", "END OF TERMS AND CONDITIONS");
 
 /// Why the file could not be written.
 #[derive(Debug, Error)]
@@ -40,6 +57,10 @@ pub enum ThirdPartyError {
     Dependencies(#[from] cargo_metadata::Error),
     #[error("the tree of dependencies has no root")]
     NoRoot,
+    #[error(
+        "no crate carries the text of the {license} licence, under which crates of the standard library are taken"
+    )]
+    NoSharedText { license: &'static str },
     #[error("{name} {version} declares the licence {declared:?}: expected one that allows MIT or Apache-2.0")]
     License { name: String, version: String, declared: String },
     #[error("{name} {version} carries no text of its {license} licence: expected one of {expected:?} in {}", .directory.display())]
@@ -54,7 +75,7 @@ pub enum ThirdPartyError {
 
 /// A row of the list.
 struct Crate<'a> {
-    name: &'a str,
+    name: Cow<'a, str>,
     version: String,
     declared: &'a str,
     license: &'static str,
@@ -85,6 +106,15 @@ pub fn third_party(root: &Path) -> Result<String, ThirdPartyError> {
     let standard = licenses::LICENSE.replace(licenses::COPYRIGHT, STANDARD_LIBRARY_COPYRIGHT);
     texts.entry(normalised(&standard)).or_default().push(STANDARD_LIBRARY.title());
     rows.push(STANDARD_LIBRARY);
+    let (license, words) = THEIR_LICENSE;
+    let titles = texts.iter_mut().find(|(text, _)| text.contains(words)).map(|(_, titles)| titles);
+    let titles = titles.ok_or(ThirdPartyError::NoSharedText { license })?;
+    for (name, declared, repository) in STANDARD_LIBRARY_CRATES {
+        let name = Cow::Owned(format!("Rust standard library: {name}"));
+        let row = Crate { name, version: String::new(), declared, license, repository };
+        titles.push(row.title());
+        rows.push(row);
+    }
     Ok(document(&rows, &texts))
 }
 
@@ -127,7 +157,13 @@ fn row(package: &Package) -> Result<Crate<'_>, ThirdPartyError> {
         }
     })?;
     let repository = package.repository.as_deref().unwrap_or_default();
-    Ok(Crate { name: &package.name, version: package.version.to_string(), declared, license, repository })
+    Ok(Crate {
+        name: Cow::Borrowed(&package.name),
+        version: package.version.to_string(),
+        declared,
+        license,
+        repository,
+    })
 }
 
 /// The text of one of the accepted licences as the package carries it.

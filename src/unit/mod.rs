@@ -94,7 +94,8 @@ pub enum UnitError {
     )]
     BeyondLongestStep { duration: f64, limit: f64 },
     #[error(
-        "{first} and {second} are both {value} {unit}: expected two different numbers", value = Readable(*value)
+        "{first} and {second} are both {value} {unit}: expected numbers that differ by a millionth or more",
+        value = Readable(*value)
     )]
     Equal { first: &'static str, second: &'static str, value: f64, unit: &'static str },
     #[error(

@@ -158,7 +158,15 @@ fn a_step_that_does_not_follow_is_refused_however_long() {
         let component = Component::in_phase(standard, unit, Phase::Step);
         let now = Component::STEPPED_TO;
         let before = component.snapshot();
-        for (time, h) in [(0.9, 1000.0), (now + 1e-6, 1e-3), (now - 1e-6, 1e-3), (0.0, 100.0)] {
+        for (time, h) in [
+            (0.9, 1000.0),
+            (0.9, 9e8),
+            (0.9, 1e12),
+            (0.0, 1e300),
+            (now + 1e-6, 1e-3),
+            (now - 1e-6, 1e-3),
+            (0.0, 100.0),
+        ] {
             let said = format!("currentCommunicationPoint = {time} s does not follow the last one");
             component.assert_refused(component.step(time, h), &[&said, "expected 0.005 s"]);
         }
