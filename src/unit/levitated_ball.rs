@@ -71,7 +71,7 @@ pub const fn mass() -> Variable {
 
 pub const fn resistance() -> Variable {
     Variable::parameter("resistance", Kind::Real(&RESISTANCE), LevitatedBall::LABORATORY.resistance)
-        .range(1e-3, 1e4)
+        .range(1e-3, 1e3)
         .describe("R, assumed as the mass is")
 }
 
@@ -81,7 +81,7 @@ pub const fn inductance_constant() -> Variable {
         Kind::Real(&INDUCTANCE_CONSTANT),
         LevitatedBall::LABORATORY.inductance_constant,
     )
-    .range(1e-9, 1.0)
+    .range(1e-7, 1.0)
     .describe("k: the inductance is k / (gap - position); assumed as the mass is")
 }
 
