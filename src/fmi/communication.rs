@@ -77,20 +77,27 @@ impl CommunicationPoint {
                 expected,
             });
         }
+        let is_rounded = (point - self.now).abs() <= ROUNDING * self.now.abs();
+        let passes = if is_rounded { step_size } else { self.duration_after_gap(point, step_size)? };
+        let argument = "currentCommunicationPoint + communicationStepSize";
+        self.require_before_stop_time(argument, point + step_size, step_size)?;
+        Ok(passes)
+    }
+
+    /// As [`Self::duration`], of a step from a `point` that is not the end of the last step.
+    #[cold]
+    fn duration_after_gap(&self, point: f64, step_size: f64) -> Result<f64, CallError> {
         let gap = point - self.now;
         // Times round by their own size and that of those before, be the step as long as it likes.
         let largest_time = point.abs().max(self.now.abs());
         let span = step_size.min(largest_time.max(self.drift / HALF_A_UNIT));
-        let passes = if gap.abs() <= ROUNDING * largest_time.max(span) {
-            step_size
+        if gap.abs() <= ROUNDING * largest_time.max(span) {
+            Ok(step_size)
         } else if gap.abs() <= TOLERANCE * span {
-            step_size + gap
+            Ok(step_size + gap)
         } else {
-            return Err(CallError::TimeDoesNotFollow { got: point, expected: self.now });
-        };
-        let argument = "currentCommunicationPoint + communicationStepSize";
-        self.require_before_stop_time(argument, point + step_size, step_size)?;
-        Ok(passes)
+            Err(CallError::TimeDoesNotFollow { got: point, expected: self.now })
+        }
     }
 
     /// Refuses a `time` \[s\] after the stop time; rounding is measured by `step`, the way that leads there \[s\].
