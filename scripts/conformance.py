@@ -201,9 +201,9 @@ NOTES = """\
   in packages of its own, and in the default experiments of its units. FMPy and ecospy are told it. No loop bears FMPy's own choice of 10 ms, with which each value acts two steps late: the
   observer of the bearing would see ten equal positions in a row and the coil of the ball forgets its current in 5 ms, so
   that even the true states fed back lose it; of the rig the printed PID is lost from 2 ms on. The controllers in the
-  packages refuse steps beyond 1 ms and say so. Below, ball and rig bear any step; the bearing needs one of which its
-  sample time of 1 ms is a multiple (0.5 ms, 0.25 ms): otherwise ticks lie within steps, whose inputs are older, and the
-  observer, which takes positions to the last digit, loses the rotor.
+  packages refuse steps beyond 1 ms and say so. Ball and rig bear all those from 0.1 ms that were tried, 0.3 and 0.7 ms
+  among them; the bearing needs one of which its sample time of 1 ms is a multiple (0.5 ms, 0.25 ms): otherwise ticks
+  lie within steps, whose inputs are older, and the observer, which takes positions to the last digit, loses the rotor.
 - OMSimulator's Python package downloads its program from a server of its own when it is installed, which the tests
   cannot rely on; it is not among the programs.
 """

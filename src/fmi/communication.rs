@@ -49,7 +49,8 @@ impl CommunicationPoint {
     /// Time \[s\] that passes in a step from `point` over `step_size`, both in s.
     ///
     /// A difference between `point` and the end of the last step is taken for rounding and ignored up to a few
-    /// units in the last place, passes in addition up to a billionth of the step, and is an error beyond. A step that
+    /// units in the last place, passes in addition up to a billionth of the step, or of the times if those are smaller, and is
+    /// an error beyond. A step that
     /// ends after the stop time is an error, too, unless rounding alone carries it there, its own and that of the steps
     /// before (FMI 2.0.5, section 2.1.6; FMI 3.0.2, section 2.3.2).
     pub fn duration(&self, point: f64, step_size: f64) -> Result<f64, CallError> {

@@ -1,12 +1,10 @@
 //! Steps that would compute for more than about a second are refused before they begin, with what would be accepted.
 
-use core::ffi::c_void;
 use std::time::{Duration, Instant};
 
-use maglev_fmu::fmi::fmi3::types::fmi3Boolean;
 use maglev_fmu::unit::UNITS;
 
-use super::harness::clocked::{Choices, sampled_units};
+use super::harness::clocked::{Choices, go_on, sampled_units};
 use super::harness::{BOTH, Component, OK};
 
 /// The longest step that a refusal names.
@@ -147,23 +145,10 @@ fn a_step_that_ends_at_the_next_tick_may_be_as_long_as_it_likes() {
     }
 }
 
-/// Goes on with the step.
-unsafe extern "C-unwind" fn callback(
-    _: *mut c_void,
-    _: f64,
-    _: fmi3Boolean,
-    _: fmi3Boolean,
-    _: fmi3Boolean,
-    _: fmi3Boolean,
-    _: *mut fmi3Boolean,
-    _: *mut f64,
-) {
-}
-
 #[test]
 fn steps_beyond_longest_step_are_refused_with_callbacks_and_without() {
     for unit in sampled_units() {
-        for intermediate_update in [None, Some(callback as _)] {
+        for intermediate_update in [None, Some(go_on as _)] {
             let component =
                 Component::co_simulation(unit, Choices { intermediate_update, ..Choices::default() });
             assert_eq!(component.set("longest_step", 1e-3), OK);

@@ -1,13 +1,10 @@
 //! However an importer has a unit tick, within steps, at events, on activation, in either standard: the same ticks, at the
 //! same times, with the same inputs, to the last bit.
 
-use core::ffi::c_void;
-
-use maglev_fmu::fmi::fmi3::types::fmi3Boolean;
 use maglev_fmu::unit::Edition;
 use maglev_fmu::unit::variable::{Causality, Kind};
 
-use super::harness::clocked::{Choices, sampled_units};
+use super::harness::clocked::{Choices, go_on, sampled_units};
 use super::harness::{Component, OK, Standard};
 
 /// \[s\]
@@ -43,18 +40,6 @@ const MODES: [Mode; 8] = [
     Mode::Scheduled,
 ];
 
-unsafe extern "C-unwind" fn ignore(
-    _: *mut c_void,
-    _: f64,
-    _: fmi3Boolean,
-    _: fmi3Boolean,
-    _: fmi3Boolean,
-    _: fmi3Boolean,
-    _: *mut fmi3Boolean,
-    _: *mut f64,
-) {
-}
-
 fn instance(mode: Mode, unit: &str) -> Component {
     let none = Choices::default();
     match mode {
@@ -67,12 +52,12 @@ fn instance(mode: Mode, unit: &str) -> Component {
             Component::co_simulation(unit, Choices { event_mode: true, ..none })
         }
         Mode::Callbacks => {
-            Component::co_simulation(unit, Choices { intermediate_update: Some(ignore), ..none })
+            Component::co_simulation(unit, Choices { intermediate_update: Some(go_on), ..none })
         }
         Mode::PlainCallbacks => Component::co_simulation_of(
             Edition::Plain,
             unit,
-            Choices { intermediate_update: Some(ignore), ..none },
+            Choices { intermediate_update: Some(go_on), ..none },
         ),
         Mode::Scheduled => Component::scheduled(unit, None),
     }

@@ -39,6 +39,19 @@ pub struct Choices {
     pub intermediate_update: Option<fmi3IntermediateUpdateCallback>,
 }
 
+/// A callback of intermediate update that sets nothing and goes on with the step.
+pub unsafe extern "C-unwind" fn go_on(
+    _: *mut c_void,
+    _: f64,
+    _: fmi3Boolean,
+    _: fmi3Boolean,
+    _: fmi3Boolean,
+    _: fmi3Boolean,
+    _: *mut fmi3Boolean,
+    _: *mut f64,
+) {
+}
+
 impl Component {
     /// A co-simulation instance that knows the unit's clocks; its recorder is the environment of the callback.
     pub fn co_simulation(unit: &str, choices: Choices) -> Self {
