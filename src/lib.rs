@@ -12,6 +12,7 @@ pub mod observer;
 #[cfg(feature = "tools")]
 pub mod package;
 pub mod plant;
+pub mod scalar;
 pub mod signal;
 #[cfg(feature = "tools")]
 pub mod study;

@@ -6,7 +6,8 @@ mod package_xml;
 use std::collections::{BTreeMap, BTreeSet};
 
 use maglev_fmu::package::{Capabilities, FmiVersion, Form, GenerationTime, model_description};
-use maglev_fmu::unit::variable::{Causality, DependencyKind, Kind};
+use maglev_fmu::unit::structure::DependencyKind;
+use maglev_fmu::unit::variable::{Causality, Kind};
 use maglev_fmu::unit::{Description, Edition, StartValues, UNITS};
 use package_xml::Element;
 
@@ -482,17 +483,20 @@ fn structure_lists_outputs_and_initial_unknowns_exactly() {
                 let (_, known) = description.find(name).unwrap();
                 form.version == FmiVersion::Three || known.causality != Causality::Parameter
             };
-            let declared = variable.depends_on.iter().filter(|dependency| is_known(dependency.name));
-            let declared: BTreeSet<(&str, &str)> = declared
-                .map(|dependency| {
-                    let kind = match dependency.kind {
+            let row = row(unknown.attribute(key).unwrap());
+            let found_in_equations = description.dependencies().swap_remove(row).at_an_instant;
+            let declared: BTreeSet<(&str, &str)> = found_in_equations
+                .iter()
+                .map(|(known, kind)| {
+                    let kind = match kind {
                         DependencyKind::Constant => "constant",
                         DependencyKind::Fixed => "fixed",
                         DependencyKind::Discrete => "discrete",
                         DependencyKind::Dependent => "dependent",
                     };
-                    (dependency.name, kind)
+                    (description.variables[*known].name, kind)
                 })
+                .filter(|(name, _)| is_known(name))
                 .collect();
             assert_eq!(found, declared, "{}", variable.name);
         }
@@ -502,9 +506,8 @@ fn structure_lists_outputs_and_initial_unknowns_exactly() {
             let dependencies: Vec<usize> =
                 unknown.attribute("dependencies").unwrap().split_whitespace().map(row).collect();
             assert!(dependencies.is_sorted_by(|a, b| a < b), "{}", variable.name);
-            let names: BTreeSet<&str> =
-                dependencies.iter().map(|known| description.variables[*known].name).collect();
-            assert_eq!(names, variable.initially_from.iter().copied().collect(), "{}", variable.name);
+            let row = row(unknown.attribute(key).unwrap());
+            assert_eq!(dependencies, description.dependencies()[row].initially, "{}", variable.name);
             for known in &dependencies {
                 let causality = description.variables[*known].causality;
                 assert!(

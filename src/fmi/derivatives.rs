@@ -2,6 +2,7 @@
 
 use super::{CallError, Instance, Interface, Phase};
 use crate::unit::ContinuousUnit;
+use crate::unit::continuous::{Stage, Tangents};
 use crate::unit::value::ValueError;
 use crate::unit::variable::{Causality, Kind, Variability, Variable};
 
@@ -19,10 +20,8 @@ impl Instance {
         sensitivity: &mut [f64],
     ) -> Result<(), CallError> {
         let unit = Differentiated::new(self, unknowns, knowns)?;
-        let along_seed = |unknown: u32| {
-            let terms = knowns.iter().zip(seed);
-            terms.map(|(known, seed)| unit.partial(unknown, *known) * seed).sum()
-        };
+        let tangents = unit.tangents(knowns.iter().copied().zip(seed.iter().copied()));
+        let along_seed = |unknown: u32| tangents.of_value(unknown as usize);
         fill(unknowns, sensitivity, along_seed, "the derivative along the seed of", unit.variables)
     }
 
@@ -36,8 +35,9 @@ impl Instance {
     ) -> Result<(), CallError> {
         let unit = Differentiated::new(self, unknowns, knowns)?;
         let along_seed = |known: u32| {
+            let tangents = unit.tangents(core::iter::once((known, 1.0)));
             let terms = unknowns.iter().zip(seed);
-            terms.map(|(unknown, seed)| unit.partial(*unknown, known) * seed).sum()
+            terms.map(|(unknown, seed)| tangents.of_value(*unknown as usize) * seed).sum()
         };
         fill(knowns, sensitivity, along_seed, "the derivative of the weighted unknowns by", unit.variables)
     }
@@ -60,7 +60,8 @@ impl Instance {
         self.evaluate();
         let (rows, variables) = (self.rows, self.variables);
         let unit = self.unit.continuous().ok_or(HELD)?;
-        let slope = |output: u32| unit.output_slope(output as usize, &rows);
+        let slopes = unit.output_slopes(&rows);
+        let slope = |output: u32| slopes.of_value(output as usize);
         fill(references, derivatives, slope, "the derivative with respect to time of", variables)
     }
 
@@ -160,13 +161,10 @@ impl<'a> Differentiated<'a> {
         Ok(Self { unit: instance.unit.continuous().ok_or(HELD)?, variables, is_initialising })
     }
 
-    fn partial(&self, unknown: u32, known: u32) -> f64 {
-        let (unknown, known) = (unknown as usize, known as usize);
-        if self.is_initialising {
-            self.unit.initial_partial_derivative(unknown, known)
-        } else {
-            self.unit.partial_derivative(unknown, known)
-        }
+    /// How fast every value changes when `knowns` do so.
+    fn tangents(&self, knowns: impl Iterator<Item = (u32, f64)>) -> Tangents {
+        let stage = if self.is_initialising { Stage::Initialisation } else { Stage::Running };
+        self.unit.tangents(stage, &mut knowns.map(|(known, along)| (known as usize, along)))
     }
 }
 

@@ -209,10 +209,10 @@ fn initial_inputs(description: &'static Description) -> Vec<usize> {
     if !description.is_sampled() {
         return Vec::new();
     }
-    let outputs = description.variables.iter().filter(|variable| variable.causality == Causality::Output);
-    let sources = outputs.flat_map(|output| output.initially_from).filter_map(|name| description.find(name));
-    let inputs = sources.filter(|(_, source)| source.causality == Causality::Input);
-    inputs.map(|(reference, _)| reference).collect()
+    let rows = description.variables.iter().zip(description.dependencies());
+    let outputs = rows.filter(|(variable, _)| variable.causality == Causality::Output);
+    let sources = outputs.flat_map(|(_, dependencies)| dependencies.initially);
+    sources.filter(|source| description.variables[*source].causality == Causality::Input).collect()
 }
 
 /// A unit that starts as in a package of its system meets the other one as it starts there.

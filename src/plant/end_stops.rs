@@ -9,6 +9,7 @@
 //! integrator needs to do the same.
 
 use super::runge_kutta;
+use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
 /// Where the body rests, named by the position and not by up and down, which depend on the rig's axis.
@@ -21,13 +22,17 @@ pub enum Contact {
     AtLargestPosition,
 }
 
+impl Contact {
+    pub const ALL: [Self; 3] = [Self::None, Self::AtSmallestPosition, Self::AtLargestPosition];
+}
+
 /// A body guided along one axis, with all its inputs held.
-pub trait Guided<const N: usize> {
+pub trait Guided<const N: usize, S: Scalar = f64> {
     /// Rate of the state in free flight; `rate[0]` is the velocity, `rate[1]` the acceleration \[m/s2\].
-    fn rate(&self, state: &[f64; N]) -> [f64; N];
+    fn rate(&self, state: &[S; N]) -> [S; N];
 
     /// Smallest and largest position \[m\], in this order and different.
-    fn stops(&self) -> (f64, f64);
+    fn stops(&self) -> (S, S);
 }
 
 /// Events within one sub-step after which a chattering body is left as it is until the sub-step's end. Each impact
@@ -44,15 +49,15 @@ const BISECTIONS: u32 = 64;
 
 /// Rate of the state: at a stop neither position nor velocity change.
 #[inline]
-pub fn rate_in_contact<const N: usize>(
-    system: &impl Guided<N>,
-    state: &[f64; N],
+pub fn rate_in_contact<const N: usize, S: Scalar>(
+    system: &impl Guided<N, S>,
+    state: &[S; N],
     contact: Contact,
-) -> [f64; N] {
+) -> [S; N] {
     let mut rate = system.rate(state);
     if contact != Contact::None {
-        rate[0] = 0.0;
-        rate[1] = 0.0;
+        rate[0] = S::from(0.0);
+        rate[1] = S::from(0.0);
     }
     rate
 }
@@ -61,11 +66,11 @@ pub fn rate_in_contact<const N: usize>(
 /// [`transition`] is due. For a stop the body does not touch it is the distance \[m\], for the one it rests on the
 /// acceleration \[m/s2\] that presses it on.
 #[inline]
-pub fn event_indicators<const N: usize>(
-    system: &impl Guided<N>,
-    state: &[f64; N],
+pub fn event_indicators<const N: usize, S: Scalar>(
+    system: &impl Guided<N, S>,
+    state: &[S; N],
     contact: Contact,
-) -> [f64; 2] {
+) -> [S; 2] {
     let (smallest, largest) = system.stops();
     let mut indicators = [state[0] - smallest, largest - state[0]];
     match contact {
@@ -98,6 +103,17 @@ pub fn transition<const N: usize>(
     }
     state[1] = 0.0;
     if inwards * system.rate(state)[1] > 0.0 { Contact::None } else { touched }
+}
+
+/// Position and velocity with which a body starts that is given these: what [`transition`] makes of them, whichever
+/// contact that is.
+pub fn settled<S: Scalar>([position, velocity]: [S; 2], (smallest, largest): (S, S)) -> [S; 2] {
+    let still = S::from(0.0);
+    let upwards = velocity.if_at_most(still, still, velocity);
+    let downwards = still.if_at_most(velocity, still, velocity);
+    let below_the_largest = largest.if_at_most(position, downwards, velocity);
+    let velocity = position.if_at_most(smallest, upwards, below_the_largest);
+    [largest.min(smallest.max(position)), velocity]
 }
 
 /// Lets `duration` \[s\] pass in sub-steps of at most `longest_substep` \[s\].
@@ -321,6 +337,19 @@ mod tests {
         let events = f64::from(EVENTS_PER_ADVANCE) * f64::from(BISECTIONS) * 2.0 * 8.0;
         let plain = f64::from(substeps) * 2.0 * 8.0;
         assert!(system.0.get() as f64 <= events + plain, "{} {events} {plain}", system.0.get());
+    }
+
+    proptest! {
+        #[test]
+        fn a_start_is_a_transition_from_no_contact(
+            position in prop_oneof![-2.0..3.0f64, Just(-1.0), Just(2.0)], velocity in prop_oneof![-1.0..1.0f64, Just(0.0)],
+            acceleration in -1.0..1.0f64,
+        ) {
+            let system = Thrown { acceleration, jerk: 0.0 };
+            let mut state = [position, velocity, 0.0];
+            transition(&system, &mut state, Contact::None);
+            prop_assert_eq!(settled([position, velocity], system.stops()), [state[0], state[1]]);
+        }
     }
 
     #[test]

@@ -12,21 +12,22 @@
 //! The magnet's face is at y = c.
 
 use super::end_stops::{Contact, Guided, advance};
+use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
 /// What the ball, the coil and gravity are.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LevitatedBall {
+pub struct LevitatedBall<S = f64> {
     /// m \[kg\]
-    pub mass: f64,
+    pub mass: S,
     /// R \[Ohm\]
-    pub resistance: f64,
+    pub resistance: S,
     /// k \[N m2/A2\], the inductance is k / (c - y)
-    pub inductance_constant: f64,
+    pub inductance_constant: S,
     /// c \[m\], gap at y = 0
-    pub gap: f64,
+    pub gap: S,
     /// g \[m/s2\]
-    pub gravity: f64,
+    pub gravity: S,
 }
 
 /// State of ball and coil.
@@ -49,11 +50,25 @@ impl State {
 
 /// What acts on the ball from outside and is held, or how fast it moves, each per second.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Drive {
+pub struct Drive<S = f64> {
     /// u \[V\]
-    pub voltage: f64,
+    pub voltage: S,
     /// F \[N\], upwards
-    pub force: f64,
+    pub force: S,
+}
+
+impl<S: Scalar> LevitatedBall<S> {
+    /// i of (1) \[A\]
+    #[inline]
+    pub fn current(&self, position: S, flux: S) -> S {
+        (self.gap - position) * flux / self.inductance_constant
+    }
+
+    /// lam^2 / (2 k) \[N\]
+    #[inline]
+    pub fn magnetic_force(&self, flux: S) -> S {
+        flux * flux / (S::from(2.0) * self.inductance_constant)
+    }
 }
 
 impl LevitatedBall {
@@ -69,16 +84,6 @@ impl LevitatedBall {
     /// The state at rest at `position` \[m\].
     pub fn equilibrium(&self, position: f64) -> State {
         State { position, velocity: 0.0, flux: self.equilibrium_flux() }
-    }
-
-    /// i of (1) \[A\]
-    pub fn current(&self, position: f64, flux: f64) -> f64 {
-        (self.gap - position) * flux / self.inductance_constant
-    }
-
-    /// lam^2 / (2 k) \[N\]
-    pub fn magnetic_force(&self, flux: f64) -> f64 {
-        flux * flux / (2.0 * self.inductance_constant)
     }
 
     /// Lets `duration` \[s\] pass under a held `drive`, between the magnet's face and `lower_stop` \[m\].
@@ -137,34 +142,35 @@ impl Drive {
 
 /// The ball under a held drive, position y, velocity y', flux lam: what [`advance`] moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DrivenBall {
-    gap: f64,
-    lower_stop: f64,
-    voltage: f64,
+pub struct DrivenBall<S = f64> {
+    gap: S,
+    lower_stop: S,
+    voltage: S,
     /// R / k
-    damping: f64,
+    damping: S,
     /// 1 / (2 k m)
-    lift: f64,
+    lift: S,
     /// -g + F / m
-    constant_acceleration: f64,
+    constant_acceleration: S,
 }
 
-impl DrivenBall {
-    pub fn new(ball: &LevitatedBall, lower_stop: f64, drive: Drive) -> Self {
+impl<S: Scalar> DrivenBall<S> {
+    #[inline]
+    pub fn new(ball: &LevitatedBall<S>, lower_stop: S, drive: Drive<S>) -> Self {
         Self {
             gap: ball.gap,
             lower_stop,
             voltage: drive.voltage,
             damping: ball.resistance / ball.inductance_constant,
-            lift: 0.5 / (ball.inductance_constant * ball.mass),
+            lift: S::from(0.5) / (ball.inductance_constant * ball.mass),
             constant_acceleration: drive.force / ball.mass - ball.gravity,
         }
     }
 }
 
-impl Guided<3> for DrivenBall {
+impl<S: Scalar> Guided<3, S> for DrivenBall<S> {
     #[inline(always)]
-    fn rate(&self, &[position, velocity, flux]: &[f64; 3]) -> [f64; 3] {
+    fn rate(&self, &[position, velocity, flux]: &[S; 3]) -> [S; 3] {
         [
             velocity,
             self.lift * flux * flux + self.constant_acceleration,
@@ -172,7 +178,7 @@ impl Guided<3> for DrivenBall {
         ]
     }
 
-    fn stops(&self) -> (f64, f64) {
+    fn stops(&self) -> (S, S) {
         (self.lower_stop, self.gap)
     }
 }

@@ -13,6 +13,7 @@
 //! The sensor reads k2 x + eta in volts (from the rig's manual), so that its voltage grows as the ball falls.
 
 use super::end_stops::{self, Contact, Guided};
+use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
 /// Longest step of the integrator \[s\]: with order 5 far below the double's resolution around the operating point,
@@ -30,34 +31,36 @@ pub struct State {
 
 /// Physical parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MaglevRig {
+pub struct MaglevRig<S = f64> {
     /// m \[kg\]
-    pub mass: f64,
+    pub mass: S,
     /// g \[m/s2\]
-    pub gravity: f64,
+    pub gravity: S,
     /// K \[N m2/A2\]
-    pub electromagnetic_constant: f64,
+    pub electromagnetic_constant: S,
     /// k1 \[A/V\] of the driver with its inner current loop.
-    pub driver_gain: f64,
+    pub driver_gain: S,
 }
 
-impl MaglevRig {
-    /// Table 1 of the paper.
-    pub const PRINTED: Self =
-        Self { mass: 0.02, gravity: 9.8, electromagnetic_constant: 2.5e-5, driver_gain: 1.05 };
-
+impl<S: Scalar> MaglevRig<S> {
     /// f of (5), upwards \[N\], for a `position` \[m\] and a `voltage` \[V\].
     #[inline]
-    pub fn magnetic_force(&self, position: f64, voltage: f64) -> f64 {
+    pub fn magnetic_force(&self, position: S, voltage: S) -> S {
         let current_per_distance = self.driver_gain * voltage / position;
         self.electromagnetic_constant * current_per_distance * current_per_distance
     }
 
     /// x'' of (6) \[m/s2\], with a disturbing `force` \[N\].
     #[inline]
-    pub fn acceleration(&self, position: f64, voltage: f64, force: f64) -> f64 {
+    pub fn acceleration(&self, position: S, voltage: S, force: S) -> S {
         self.gravity - (self.magnetic_force(position, voltage) - force) / self.mass
     }
+}
+
+impl MaglevRig {
+    /// Table 1 of the paper.
+    pub const PRINTED: Self =
+        Self { mass: 0.02, gravity: 9.8, electromagnetic_constant: 2.5e-5, driver_gain: 1.05 };
 
     /// u0 \[V\] that holds the ball at `position` \[m\], 0.758947 V at 9 mm.
     pub fn operating_voltage(&self, position: f64) -> f64 {
@@ -75,16 +78,16 @@ impl MaglevRig {
 
 /// The ball between its stops, with all inputs held.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HeldBall {
-    pub rig: MaglevRig,
+pub struct HeldBall<S = f64> {
+    pub rig: MaglevRig<S>,
     /// At the driver \[V\], within its limits.
-    pub voltage: f64,
+    pub voltage: S,
     /// Disturbance, positive downwards \[N\].
-    pub force: f64,
+    pub force: S,
     /// Position at which the ball touches the coil, above 0 \[m\].
-    pub upper_stop: f64,
+    pub upper_stop: S,
     /// Position at which it lies below, above [`Self::upper_stop`] \[m\].
-    pub lower_stop: f64,
+    pub lower_stop: S,
 }
 
 impl HeldBall {
@@ -106,15 +109,15 @@ impl HeldBall {
     }
 }
 
-impl Guided<2> for HeldBall {
+impl<S: Scalar> Guided<2, S> for HeldBall<S> {
     /// Beyond the upper stop, where only the search for an impact looks, the force is that at the stop: it has a pole
     /// at x = 0.
     #[inline]
-    fn rate(&self, &[position, velocity]: &[f64; 2]) -> [f64; 2] {
+    fn rate(&self, &[position, velocity]: &[S; 2]) -> [S; 2] {
         [velocity, self.rig.acceleration(position.max(self.upper_stop), self.voltage, self.force)]
     }
 
-    fn stops(&self) -> (f64, f64) {
+    fn stops(&self) -> (S, S) {
         (self.upper_stop, self.lower_stop)
     }
 }
@@ -130,28 +133,30 @@ pub struct LinearModel {
 
 /// Position sensor, linear within its range.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PositionSensor {
+pub struct PositionSensor<S = f64> {
     /// k2 \[V/m\]
-    pub gain: f64,
+    pub gain: S,
     /// eta \[V\]
-    pub offset: f64,
+    pub offset: S,
 }
 
-impl PositionSensor {
-    /// Of the rig's manual: -1.50868 V at 9 mm.
-    pub const MANUAL: Self = Self { gain: 143.48, offset: -2.8 };
-
+impl<S: Scalar> PositionSensor<S> {
     /// k2 x + eta \[V\]
     #[inline]
-    pub fn voltage(&self, position: f64) -> f64 {
+    pub fn voltage(&self, position: S) -> S {
         self.gain * position + self.offset
     }
 
     /// Inverse of [`Self::voltage`] \[m\].
     #[inline]
-    pub fn position(&self, voltage: f64) -> f64 {
+    pub fn position(&self, voltage: S) -> S {
         (voltage - self.offset) / self.gain
     }
+}
+
+impl PositionSensor {
+    /// Of the rig's manual: -1.50868 V at 9 mm.
+    pub const MANUAL: Self = Self { gain: 143.48, offset: -2.8 };
 }
 
 #[cfg(test)]

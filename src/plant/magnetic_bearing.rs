@@ -13,6 +13,7 @@
 //! its sign. The paper prints that polynomial as (4a) and calls it exact; it is so only without a sign change.
 //! [`Map::Exact`] splits the step where the flux crosses zero.
 
+use crate::scalar::Scalar;
 use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 
@@ -63,22 +64,24 @@ pub struct ForceEffect {
 
 /// The bearing of (3).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct MagneticBearing {
+pub struct MagneticBearing<S = f64> {
     /// eps = 2 Phi0 / Phi_sat \[1\]; 0 is operation without bias flux.
-    pub epsilon: f64,
+    pub epsilon: S,
 }
 
-impl MagneticBearing {
+impl<S: Scalar> MagneticBearing<S> {
     /// The bearing with a given bias flux Phi0 and saturation flux Phi_sat, both in Wb.
-    pub fn with_bias(bias_flux: f64, saturation_flux: f64) -> Self {
-        Self { epsilon: 2.0 * bias_flux / saturation_flux }
+    pub fn with_bias(bias_flux: S, saturation_flux: S) -> Self {
+        Self { epsilon: S::from(2.0) * bias_flux / saturation_flux }
     }
 
     /// x2' of (3) \[m/s2\].
-    pub fn acceleration(&self, flux: f64) -> f64 {
+    pub fn acceleration(&self, flux: S) -> S {
         self.epsilon * flux + flux * flux.abs()
     }
+}
 
+impl MagneticBearing {
     /// Derivative of [`Self::acceleration`] with respect to the flux \[m/(s2 Wb)\], continuous at zero flux.
     pub fn acceleration_slope(&self, flux: f64) -> f64 {
         self.epsilon + 2.0 * flux.abs()

@@ -1,11 +1,13 @@
 //! Sensor resolution.
 
+use crate::scalar::Scalar;
+
 /// `value` rounded to the nearest multiple of `resolution`, in the same unit; 0 is an ideal sensor.
-pub fn quantise(value: f64, resolution: f64) -> f64 {
-    if resolution == 0.0 {
+pub fn quantise<S: Scalar>(value: S, resolution: S) -> S {
+    if resolution.is_zero() {
         return value;
     }
-    let quantised = libm::rint(value / resolution) * resolution;
+    let quantised = (value / resolution).rint() * resolution;
     // A resolution beyond the range of the quotient cannot matter.
     if quantised.is_finite() { quantised } else { value }
 }

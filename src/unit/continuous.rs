@@ -1,6 +1,7 @@
 //! Units that move in continuous time, as an importer sees them who integrates them with a solver of his own.
 
 use super::Description;
+use super::LARGEST_TABLE;
 use super::Unit;
 use super::variable::{Causality, Kind};
 use serde::{Deserialize, Serialize};
@@ -42,12 +43,9 @@ pub trait ContinuousUnit: Unit {
     /// Time \[s\] after the present one at which the importer has to come to an event.
     fn next_event_time(&self) -> Option<f64>;
 
-    /// Partial derivative of an output or state derivative with respect to an input, state or parameter, by value
-    /// reference, in closed form, where the unit stands.
-    fn partial_derivative(&self, unknown: usize, known: usize) -> f64;
-
-    /// The same of what initialisation computes from inputs and parameters.
-    fn initial_partial_derivative(&self, unknown: usize, known: usize) -> f64;
+    /// How fast each value changes where the unit stands when knowns, by value reference, change as fast as `seed` says:
+    /// inputs, parameters and, once it runs, states.
+    fn tangents(&self, stage: Stage, seed: &mut dyn Iterator<Item = (usize, f64)>) -> Tangents;
 
     /// Slope \[1/s of the input's unit\] with which an input moves over a step.
     fn input_slope(&self, input: usize) -> f64;
@@ -56,16 +54,42 @@ pub trait ContinuousUnit: Unit {
     /// moves along, so that it is the input's value at the end of the step.
     fn set_input_slope(&mut self, input: usize, slope: f64);
 
-    /// Derivative of an output with respect to time, by the chain rule; 0 for an output that is held.
-    fn output_slope(&self, output: usize, rows: &ContinuousRows) -> f64 {
-        let along_states = rows.states().iter().zip(rows.derivatives());
-        let along_states = along_states
-            .map(|(state, derivative)| self.partial_derivative(output, *state) * self.values()[*derivative]);
+    /// Derivatives of all outputs with respect to time; 0 for those that are held.
+    fn output_slopes(&self, rows: &ContinuousRows) -> Tangents {
+        let states = rows.states().iter().zip(rows.derivatives());
+        let states = states.map(|(state, derivative)| (*state, self.values()[*derivative]));
         let inputs = self.description().variables.iter().enumerate();
         let inputs = inputs.filter(|(_, row)| row.causality == Causality::Input);
-        let along_inputs =
-            inputs.map(|(input, _)| self.partial_derivative(output, input) * self.input_slope(input));
-        along_states.chain(along_inputs).sum()
+        let inputs = inputs.map(|(input, _)| (input, self.input_slope(input)));
+        self.tangents(Stage::Running, &mut states.chain(inputs))
+    }
+}
+
+/// Which equations derivatives are those of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// What initialisation computes from inputs and parameters.
+    Initialisation,
+    /// What follows at one instant from inputs, states and parameters.
+    Running,
+}
+
+/// Rates of change by value reference.
+#[derive(Clone, Copy, Debug)]
+pub struct Tangents([f64; LARGEST_TABLE]);
+
+impl Tangents {
+    pub(super) fn of(rates: impl Iterator<Item = f64>) -> Self {
+        let mut tangents = Self([0.0; LARGEST_TABLE]);
+        for (tangent, rate) in tangents.0.iter_mut().zip(rates) {
+            *tangent = rate;
+        }
+        tangents
+    }
+
+    /// That of a value of the unit's table.
+    pub fn of_value(&self, reference: usize) -> f64 {
+        self.0.get(reference).copied().unwrap_or(0.0)
     }
 }
 
@@ -140,12 +164,6 @@ mod tests {
                     "{}",
                     row.name
                 );
-                for dependency in row.depends_on {
-                    let known = description.find(dependency.name).expect(dependency.name);
-                    let is_state = description.continuous_states().any(|(state, _)| state == known.0);
-                    let is_known = matches!(known.1.causality, Causality::Input | Causality::Parameter);
-                    assert!(is_state || is_known, "{} depends on {}", row.name, dependency.name);
-                }
             }
             for (state, derivative) in description.continuous_states() {
                 for reference in [state, derivative] {

@@ -18,12 +18,15 @@ mod magnetic_bearing_controller;
 mod magnetic_bearing_plant;
 pub mod memory;
 pub mod persistence;
+pub mod plant;
 pub mod quantity;
 pub mod sample_clock;
 pub mod sampled;
 mod sensor;
 mod start_delay;
 pub mod start_values;
+#[cfg(feature = "tools")]
+pub mod structure;
 pub mod system;
 mod token;
 pub mod value;

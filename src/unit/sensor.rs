@@ -11,6 +11,7 @@ use super::quantity::DURATION;
 use super::sample_clock::SampleClock;
 use super::variable::{Kind, Variable};
 use super::work::Load;
+use crate::scalar::Scalar;
 use crate::signal::GaussianNoise;
 use serde::{Deserialize, Serialize};
 
@@ -40,6 +41,12 @@ pub(super) fn check_sample_time(value: f64) -> Result<(), UnitError> {
     }
     let expected = "0 or at least 1e-6 s";
     Err(UnitError::Unusable { name: NAME, value, unit: DURATION.unit.name, expected })
+}
+
+/// A `value` with noise of the standard deviation `deviation`; `sample` has that of 1.
+#[inline]
+pub(super) fn noisy<S: Scalar>(value: S, deviation: S, sample: S) -> S {
+    if deviation.is_zero() { value } else { value + deviation * sample }
 }
 
 /// Noise, and the clock of the readings if they have one.
@@ -79,10 +86,13 @@ impl Sensor {
     /// A reading of `value` with noise of the standard deviation `deviation`.
     #[inline]
     pub(super) fn read(&mut self, value: f64, deviation: f64) -> f64 {
-        match deviation {
-            0.0 => value,
-            deviation => value + deviation * self.noise.sample(),
-        }
+        if deviation == 0.0 { value } else { noisy(value, deviation, self.sample()) }
+    }
+
+    /// The next number of the noise, of standard deviation 1.
+    #[inline]
+    pub(super) fn sample(&mut self) -> f64 {
+        self.noise.sample()
     }
 
     /// Work of its readings.

@@ -42,54 +42,14 @@ pub struct Variable {
     pub start: f64,
     /// Smallest and largest allowed value in the variable's unit, infinite if there is none.
     pub range: (f64, f64),
-    /// Names of the variables from which the value at the end of initialisation follows.
+    /// Of a sampled unit: names of the variables from which the value at the end of initialisation follows.
     pub initially_from: &'static [&'static str],
-    /// Inputs, states and parameters from which the value follows at one instant, once initialisation is over.
-    pub depends_on: &'static [Dependency],
     /// Name of the continuous state whose derivative with respect to time this is.
     pub derivative_of: Option<&'static str>,
     /// Whether a change of sign is an event that an importer who integrates the unit has to locate.
     pub is_event_indicator: bool,
     /// Whether this is a continuous state that may jump at an event.
     pub is_reinitialised: bool,
-}
-
-/// How a known enters the equation of an unknown.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DependencyKind {
-    /// Times a number that never changes.
-    Constant,
-    /// Times a number that follows from fixed parameters.
-    Fixed,
-    /// Times a number that changes at events and with parameters only.
-    Discrete,
-    /// In no particular way.
-    Dependent,
-}
-
-/// A known of an unknown.
-#[derive(Clone, Copy, Debug)]
-pub struct Dependency {
-    pub name: &'static str,
-    pub kind: DependencyKind,
-}
-
-impl Dependency {
-    pub const fn constant(name: &'static str) -> Self {
-        Self { name, kind: DependencyKind::Constant }
-    }
-
-    pub const fn fixed(name: &'static str) -> Self {
-        Self { name, kind: DependencyKind::Fixed }
-    }
-
-    pub const fn discrete(name: &'static str) -> Self {
-        Self { name, kind: DependencyKind::Discrete }
-    }
-
-    pub const fn dependent(name: &'static str) -> Self {
-        Self { name, kind: DependencyKind::Dependent }
-    }
 }
 
 impl Variable {
@@ -103,7 +63,6 @@ impl Variable {
             start: 0.0,
             range: (f64::NEG_INFINITY, f64::INFINITY),
             initially_from: &[],
-            depends_on: &[],
             derivative_of: None,
             is_event_indicator: false,
             is_reinitialised: false,
@@ -169,11 +128,6 @@ impl Variable {
 
     pub const fn initially_from(mut self, names: &'static [&'static str]) -> Self {
         self.initially_from = names;
-        self
-    }
-
-    pub const fn depends_on(mut self, dependencies: &'static [Dependency]) -> Self {
-        self.depends_on = dependencies;
         self
     }
 

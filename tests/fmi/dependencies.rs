@@ -131,8 +131,12 @@ fn initial_values_follow_from_what_is_declared() {
         let declared: Moved = unknowns
             .iter()
             .flat_map(|row| {
-                let variable = component.variable(*row);
-                variable.initially_from.iter().map(|source| (variable.name, *source))
+                let name_of = |row: usize| component.variable(row as u32).name;
+                let dependencies = component.description.dependencies().swap_remove(*row as usize);
+                dependencies
+                    .initially
+                    .into_iter()
+                    .map(move |source| (name_of(*row as usize), name_of(source)))
             })
             .collect();
         compare(name, &moved, &declared);
@@ -171,8 +175,9 @@ fn unknowns(component: &Component) -> Vec<u32> {
 fn declared(component: &Component, of: impl Fn(&Variable) -> bool) -> Moved {
     let unknowns = unknowns(component);
     let pairs = unknowns.iter().flat_map(|row| {
-        let variable = component.variable(*row);
-        variable.depends_on.iter().map(|dependency| (variable.name, dependency.name))
+        let name_of = |row: usize| component.variable(row as u32).name;
+        let dependencies = component.description.dependencies().swap_remove(*row as usize);
+        dependencies.at_an_instant.into_iter().map(move |(known, _)| (name_of(*row as usize), name_of(known)))
     });
     pairs.filter(|(_, known)| of(component.description.find(known).unwrap().1)).collect()
 }

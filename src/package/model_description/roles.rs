@@ -1,7 +1,8 @@
 //! What the standards derive from a variable's causality and variability.
 
 use crate::package::Capabilities;
-use crate::unit::variable::{Causality, DependencyKind, Kind, Variability, Variable};
+use crate::unit::structure::DependencyKind;
+use crate::unit::variable::{Causality, Kind, Variability, Variable};
 use crate::unit::{Description, Edition};
 
 /// The attribute `causality`.
@@ -100,24 +101,23 @@ impl Dependencies {
 
     /// What the variable follows from at one instant after initialisation. Parameters are knowns of FMI 3.0 only.
     pub fn at_an_instant(description: &Description, reference: usize, with_parameters: bool) -> Self {
-        let dependencies = description.variables[reference].depends_on.iter();
-        let entries = dependencies.filter_map(|dependency| {
-            let (known, row) = description.find(dependency.name)?;
-            let kind = match dependency.kind {
+        let dependencies = description.dependencies().swap_remove(reference).at_an_instant;
+        let entries = dependencies.into_iter().filter_map(|(known, kind)| {
+            let kind = match kind {
                 DependencyKind::Constant => "constant",
                 DependencyKind::Fixed => "fixed",
                 DependencyKind::Discrete => "discrete",
                 DependencyKind::Dependent => "dependent",
             };
-            (with_parameters || row.causality != Causality::Parameter).then_some((known, kind))
+            let is_parameter = description.variables[known].causality == Causality::Parameter;
+            (with_parameters || !is_parameter).then_some((known, kind))
         });
         Self::new(entries.collect())
     }
 
-    /// What the variable follows from in initialisation mode.
-    fn initial(description: &Description, variable: &Variable) -> Self {
-        let sources = variable.initially_from.iter().filter_map(|name| description.find(name));
-        Self::new(sources.map(|(reference, _)| (reference, "dependent")).collect())
+    /// What a variable follows from in initialisation mode.
+    fn initial(references: Vec<usize>) -> Self {
+        Self::new(references.into_iter().map(|reference| (reference, "dependent")).collect())
     }
 
     /// The attribute `dependencies`, counted from `offset`.
@@ -143,5 +143,8 @@ pub fn initial_unknowns(description: &Description) -> impl Iterator<Item = (usiz
             || row.derivative_of.is_some()
             || is_state(*index)
     });
-    unknowns.map(|(index, variable)| (index, Dependencies::initial(description, variable)))
+    let mut dependencies = description.dependencies();
+    unknowns.map(move |(index, _)| {
+        (index, Dependencies::initial(core::mem::take(&mut dependencies[index].initially)))
+    })
 }

@@ -1,12 +1,13 @@
 //! Variables and description of the levitated ball.
 
+use super::equations::LevitatedBallEquations;
 use crate::unit::Description;
 use crate::unit::levitated_ball::{
     ACCELERATION, CURRENT, FLUX, FORCE, LABORATORY_FLUX, POSITION, VELOCITY, VOLTAGE, gap, gravity,
     inductance_constant, mass, resistance,
 };
 use crate::unit::sensor::sample_time;
-use crate::unit::variable::{Dependency, Kind, Variability, Variable, variable_table};
+use crate::unit::variable::{Kind, Variability, Variable, variable_table};
 
 variable_table! {
     TIME = Variable::time();
@@ -16,110 +17,37 @@ variable_table! {
         .range(-1e6, 1e6)
         .describe("Disturbing force on the ball, positive upwards, held over a step unless its derivative is set");
     CURRENT_OUTPUT = Variable::output("current", &CURRENT)
-        .initially_from(&["initial.position", "initial.flux", "inductance_constant", "gap", "lower_stop"])
-        .depends_on(&[
-            Dependency::dependent("position"),
-            Dependency::dependent("flux"),
-            Dependency::dependent("inductance_constant"),
-            Dependency::dependent("gap"),
-        ])
         .describe("i = (c - y) lam / k, coil current");
     POSITION_OUTPUT = Variable::output("position", &POSITION)
-        .initially_from(&["initial.position", "gap", "lower_stop"])
-        .depends_on(&[Dependency::constant("position")])
         .reinitialised()
         .describe("y, position of the ball, positive upwards, the magnet's face at gap");
     VELOCITY_OUTPUT = Variable::output("velocity", &VELOCITY)
-        .initially_from(&["initial.velocity", "initial.position", "gap", "lower_stop"])
-        .depends_on(&[Dependency::constant("velocity")])
         .reinitialised()
         .describe("p / m, velocity of the ball, positive upwards");
     FLUX_OUTPUT = Variable::output("flux", &FLUX)
-        .initially_from(&["initial.flux"])
-        .depends_on(&[Dependency::constant("flux")])
         .describe("lam, flux linkage of the coil");
     VOLTAGE_MEASURED = Variable::output("voltage_measured", &VOLTAGE)
-        .initially_from(&["voltage"])
-        .depends_on(&[Dependency::dependent("voltage")])
         .describe("Mean voltage that acted over the last step, in model exchange the one that acts; wire it to the \
             controller's voltage_applied");
     CURRENT_MEASURED = Variable::output("current_measured", &CURRENT)
-        .initially_from(&[
-            "initial.position", "initial.flux", "inductance_constant", "gap", "lower_stop", "sensor.noise",
-            "sensor.resolution", "sensor.sample_time", "sensor.seed",
-        ])
-        .depends_on(&[
-            Dependency::dependent("position"),
-            Dependency::dependent("flux"),
-            Dependency::dependent("inductance_constant"),
-            Dependency::dependent("gap"),
-        ])
         .describe("Current with sensor noise and resolution, one reading per step or per sensor.sample_time; without the \
             latter in model exchange the current itself");
     CONTACT = Variable::held_output("contact", Kind::Boolean)
-        .initially_from(&[
-            "initial.position", "initial.velocity", "initial.flux", "mass", "inductance_constant", "gravity", "gap",
-            "lower_stop",
-        ])
         .describe("Whether the ball rests on the magnet or on the lower stop");
     POSITION_DERIVATIVE = Variable::local("der(position)", Kind::Real(&VELOCITY), Variability::Continuous)
-        .initially_from(&["initial.velocity", "initial.position", "gap", "lower_stop"])
         .derivative_of("position")
-        .depends_on(&[Dependency::discrete("velocity")])
         .describe("y', 0 in contact");
     ACCELERATION_LOCAL = Variable::local("acceleration", Kind::Real(&ACCELERATION), Variability::Continuous)
-        .initially_from(&[
-            "force", "initial.position", "initial.velocity", "initial.flux", "mass", "inductance_constant", "gravity", "gap", "lower_stop",
-        ])
         .derivative_of("velocity")
-        .depends_on(&[
-            Dependency::dependent("flux"),
-            Dependency::discrete("force"),
-            Dependency::dependent("mass"),
-            Dependency::dependent("inductance_constant"),
-            Dependency::discrete("gravity"),
-        ])
         .describe("p' / m under the present force; 0 in contact");
     FLUX_DERIVATIVE = Variable::local("der(flux)", Kind::Real(&VOLTAGE), Variability::Continuous)
-        .initially_from(&[
-            "voltage", "initial.position", "initial.flux", "resistance", "inductance_constant", "gap", "lower_stop",
-        ])
         .derivative_of("flux")
-        .depends_on(&[
-            Dependency::constant("voltage"),
-            Dependency::dependent("position"),
-            Dependency::dependent("flux"),
-            Dependency::dependent("resistance"),
-            Dependency::dependent("inductance_constant"),
-            Dependency::dependent("gap"),
-        ])
         .describe("lam' = u - R i");
     LOWER_STOP_INDICATOR = Variable::event_indicator("event_indicator.lower_stop")
-        .depends_on(&[
-            Dependency::dependent("position"),
-            Dependency::dependent("flux"),
-            Dependency::dependent("force"),
-            Dependency::dependent("mass"),
-            Dependency::dependent("inductance_constant"),
-            Dependency::dependent("gravity"),
-            Dependency::dependent("gap"),
-            Dependency::dependent("lower_stop"),
-        ])
         .describe("Distance to the lower stop as a share of the free way; resting there, what presses the ball on, in g");
     MAGNET_INDICATOR = Variable::event_indicator("event_indicator.magnet")
-        .depends_on(&[
-            Dependency::dependent("position"),
-            Dependency::dependent("flux"),
-            Dependency::dependent("force"),
-            Dependency::dependent("mass"),
-            Dependency::dependent("inductance_constant"),
-            Dependency::dependent("gravity"),
-            Dependency::dependent("gap"),
-            Dependency::dependent("lower_stop"),
-        ])
         .describe("Distance to the magnet as a share of the free way; resting there, what presses the ball on, in g");
     MAGNETIC_FORCE = Variable::local("magnetic_force", Kind::Real(&FORCE), Variability::Continuous)
-        .initially_from(&["initial.flux", "inductance_constant"])
         .describe("lam^2 / (2 k), force of the magnet on the ball");
     MASS = mass();
     RESISTANCE = resistance();
@@ -168,4 +96,5 @@ pub static DESCRIPTION: Description = Description::new("LevitatedBallPlant", &VA
          FMI 2.0).",
         "Not in the paper: the disturbing force, the stops and the sensor model.",
     ])
-    .experiment(1e-4, 5.0);
+    .experiment(1e-4, 5.0)
+    .equations::<LevitatedBallEquations, COUNT, 3, 2>();

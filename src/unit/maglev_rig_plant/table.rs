@@ -1,5 +1,6 @@
 //! Variables and description of the maglev rig.
 
+use super::equations::MaglevRigEquations;
 use crate::plant::maglev_rig::MaglevRig;
 use crate::unit::Description;
 use crate::unit::maglev_rig::{
@@ -8,36 +9,7 @@ use crate::unit::maglev_rig::{
     SENSOR_VOLTAGE as SENSOR_VOLTAGE_QUANTITY, sensor_gain, sensor_offset, voltage_max, voltage_min,
 };
 use crate::unit::sensor::sample_time;
-use crate::unit::variable::{Dependency, Kind, Variability, Variable, variable_table};
-
-/// What the free ball's acceleration follows from.
-const FORCES: &[Dependency] = &[
-    Dependency::dependent("position"),
-    Dependency::dependent("voltage"),
-    Dependency::discrete("force"),
-    Dependency::dependent("mass"),
-    Dependency::discrete("gravity"),
-    Dependency::dependent("electromagnetic_constant"),
-    Dependency::dependent("driver_gain"),
-    Dependency::dependent("voltage_min"),
-    Dependency::dependent("voltage_max"),
-    Dependency::dependent("upper_stop"),
-];
-
-/// What the distance to a stop and what presses the ball on follow from.
-const CONTACT_FORCES: &[Dependency] = &[
-    Dependency::dependent("position"),
-    Dependency::dependent("voltage"),
-    Dependency::dependent("force"),
-    Dependency::dependent("mass"),
-    Dependency::dependent("gravity"),
-    Dependency::dependent("electromagnetic_constant"),
-    Dependency::dependent("driver_gain"),
-    Dependency::dependent("voltage_min"),
-    Dependency::dependent("voltage_max"),
-    Dependency::dependent("upper_stop"),
-    Dependency::dependent("lower_stop"),
-];
+use crate::unit::variable::{Kind, Variability, Variable, variable_table};
 
 variable_table! {
     TIME = Variable::time();
@@ -48,77 +20,33 @@ variable_table! {
         .range(-1e3, 1e3)
         .describe("Disturbing force on the ball, positive downwards, held over a step unless its derivative is set");
     POSITION = Variable::output("position", &BALL_DISTANCE)
-        .initially_from(&["initial.position", "upper_stop", "lower_stop"])
-        .depends_on(&[Dependency::constant("position")])
         .reinitialised()
         .describe("x, distance from coil to ball, positive downwards");
     VELOCITY = Variable::output("velocity", &BALL_VELOCITY)
-        .initially_from(&["initial.velocity", "initial.position", "upper_stop", "lower_stop"])
-        .depends_on(&[Dependency::constant("velocity")])
         .reinitialised()
         .describe("x', velocity of the ball, positive downwards");
     CURRENT = Variable::output("current", &RIG_CURRENT)
-        .initially_from(&["voltage", "driver_gain", "voltage_min", "voltage_max"])
-        .depends_on(&[
-            Dependency::dependent("voltage"),
-            Dependency::dependent("driver_gain"),
-            Dependency::dependent("voltage_min"),
-            Dependency::dependent("voltage_max"),
-        ])
         .describe("i = k1 u, coil current under voltage_measured: the mean over the last step, in model exchange the \
             one that flows; 0 before the first step, when no voltage has acted");
     SENSOR_VOLTAGE = Variable::output("sensor_voltage", &SENSOR_VOLTAGE_QUANTITY)
-        .initially_from(&["initial.position", "upper_stop", "lower_stop", "sensor_gain", "sensor_offset"])
-        .depends_on(&[
-            Dependency::fixed("position"),
-            Dependency::dependent("sensor_gain"),
-            Dependency::constant("sensor_offset"),
-        ])
         .describe("k2 x + eta, true sensor voltage");
     SENSOR_VOLTAGE_MEASURED = Variable::output("sensor_voltage_measured", &SENSOR_VOLTAGE_QUANTITY)
-        .initially_from(&[
-            "initial.position", "upper_stop", "lower_stop", "sensor_gain", "sensor_offset", "sensor.noise",
-            "sensor.resolution", "sensor.sample_time", "sensor.seed", "sensor.minimum", "sensor.maximum",
-        ])
-        .depends_on(&[
-            Dependency::dependent("position"),
-            Dependency::dependent("sensor_gain"),
-            Dependency::dependent("sensor_offset"),
-            Dependency::dependent("sensor.minimum"),
-            Dependency::dependent("sensor.maximum"),
-        ])
         .describe("Sensor voltage with noise, resolution and range, one reading per step or per sensor.sample_time; without \
             the latter in model exchange the sensor voltage within the range");
     VOLTAGE_MEASURED = Variable::output("voltage_measured", &DRIVER_VOLTAGE)
-        .initially_from(&["voltage", "voltage_min", "voltage_max"])
-        .depends_on(&[
-            Dependency::dependent("voltage"),
-            Dependency::dependent("voltage_min"),
-            Dependency::dependent("voltage_max"),
-        ])
         .describe("Mean voltage that acted over the last step, within the driver's limits, in model exchange the one \
             that acts; wire it to the controller's voltage_applied");
     CONTACT = Variable::held_output("contact", Kind::Boolean)
-        .initially_from(&["initial.position", "initial.velocity", "gravity", "upper_stop", "lower_stop"])
         .describe("Whether the ball rests on a stop");
     POSITION_DERIVATIVE = Variable::local("der(position)", Kind::Real(&BALL_VELOCITY), Variability::Continuous)
-        .initially_from(&["initial.velocity", "initial.position", "upper_stop", "lower_stop"])
         .derivative_of("position")
-        .depends_on(&[Dependency::discrete("velocity")])
         .describe("x', 0 at rest on a stop");
     ACCELERATION = Variable::local("acceleration", Kind::Real(&BALL_ACCELERATION), Variability::Continuous)
-        .initially_from(&[
-            "voltage", "force", "initial.position", "initial.velocity", "mass", "gravity", "electromagnetic_constant", "driver_gain",
-            "voltage_min", "voltage_max", "upper_stop", "lower_stop",
-        ])
         .derivative_of("velocity")
-        .depends_on(FORCES)
         .describe("x'' under the present voltage and force; 0 at rest on a stop");
     UPPER_STOP_INDICATOR = Variable::event_indicator("event_indicator.upper_stop")
-        .depends_on(CONTACT_FORCES)
         .describe("Distance to the upper stop as a share of the free way; resting there, what presses the ball on, in g");
     LOWER_STOP_INDICATOR = Variable::event_indicator("event_indicator.lower_stop")
-        .depends_on(CONTACT_FORCES)
         .describe("Distance to the lower stop as a share of the free way; resting there, what presses the ball on, in g");
     MAGNETIC_FORCE = Variable::local("magnetic_force", Kind::Real(&RIG_FORCE), Variability::Continuous)
         .describe("K i^2 / x^2 under the present voltage, upwards");
@@ -195,4 +123,5 @@ pub static DESCRIPTION: Description = Description::new("MaglevRigPlant", &VARIAB
          range, operating point 9 mm, limits of the voltage (their negative half is left out: the force goes with the \
          square, so that negative voltages attract, too). Assumed: the stops. Not modelled: the driver's current loop.",
     ])
-    .experiment(1e-3, 10.0);
+    .experiment(1e-3, 10.0)
+    .equations::<MaglevRigEquations, COUNT, 2, 2>();
