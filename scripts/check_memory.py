@@ -22,7 +22,7 @@ VALGRIND = ["valgrind", "--leak-check=full", f"--show-leak-kinds={KINDS}", f"--e
 
 def test_program() -> str:
     """Builds the tests of the C boundary; path of the program."""
-    command = ["cargo", "test", "--test", "fmi", "--no-run", "--message-format=json"]
+    command = ["cargo", "test", "--locked", "--test", "fmi", "--no-run", "--message-format=json"]
     built = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
     messages = [json.loads(line) for line in built.splitlines() if line.startswith("{")]
     (program,) = (m["executable"] for m in messages if m.get("executable") and m["target"]["name"] == "fmi")

@@ -10,6 +10,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TextIO
 
 from fmpy.fmi1 import FMICallException
 from matplotlib import pyplot
@@ -76,9 +77,19 @@ def image(text: str) -> Path:
     return path
 
 
+class _Parser(argparse.ArgumentParser):
+    """A parser whose help is written or is an error, as everything else is."""
+
+    def print_help(self, file: TextIO | None = None) -> None:
+        if file is None:
+            tell(self.format_help().rstrip("\n"))
+        else:
+            super().print_help(file)
+
+
 def parser(documentation: str) -> argparse.ArgumentParser:
     """Parser with the options that say which units to run."""
-    made = argparse.ArgumentParser(
+    made = _Parser(
         description=documentation.split("\n")[0], formatter_class=argparse.ArgumentDefaultsHelpFormatter
     )
     made.add_argument("--fmi", type=int, choices=[2, 3], default=3, help="FMI version of the FMUs")

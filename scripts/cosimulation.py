@@ -103,6 +103,11 @@ class Fmu:
             variable = self._variable(name)
             is_item = variable.type == "Enumeration" and isinstance(value, str)
             number = item_number(variable, value) if is_item else value
+            # Integers of C wrap around, and truth values are integers of Python.
+            is_true_or_false = isinstance(value, bool)
+            is_too_large = variable.type in ("Integer", "Int32", "Enumeration") and not _is_32_bit(number)
+            if is_too_large or is_true_or_false != (variable.type == "Boolean"):
+                raise ValueError(f"{name} = {value!r}: expected a value of type {variable.type}")
             try:
                 self._accessor("set", variable)([variable.valueReference], [number])
             except (TypeError, OverflowError, ArgumentError):
@@ -125,6 +130,16 @@ class Fmu:
         factors = {display.name: float(display.factor) for display in unit.displayUnits}
         return (shown, factors[shown]) if shown in factors else (unit_name, 1.0)
 
+    def unit_text(self, name: str, value: Value) -> str:
+        """What parameter files call the unit of a value."""
+        variable = self._variable(name)
+        if variable.type == "Enumeration":
+            items = enumeration_items(variable).items()
+            return f"item {next((item for item, number in items if value in (item, number)), '?')}"
+        if variable.type in ("Boolean", "Integer", "Int32"):
+            return "boolean" if variable.type == "Boolean" else "integer"
+        return variable.unit or variable.declaredType.unit
+
     def _variable(self, name: str) -> ModelVariable:
         try:
             return self.variables[name]
@@ -138,8 +153,8 @@ class Fmu:
         return getattr(self.slave, verb + kind)
 
 
-def parameter_values(path: Path, unit: str) -> dict[str, Value]:
-    """Start values for `unit` from a parameter file, such as `maglev-fmu tune` writes; items of enumerations by number."""
+def parameter_values(path: Path, fmu: Fmu) -> dict[str, Value]:
+    """Start values for a unit from a parameter file, such as `maglev-fmu tune` writes; items of enumerations by number."""
     try:
         with path.open("rb") as file:
             text = file.read(LONGEST_PARAMETER_FILE + 1)
@@ -151,9 +166,24 @@ def parameter_values(path: Path, unit: str) -> dict[str, Value]:
         raise ValueError(f"cannot read the parameter file {path}: {error}") from None
     if not isinstance(content, dict) or not isinstance(content.get("values"), dict):
         raise ValueError(f'{path} is no parameter file: expected {{"unit": NAME, "values": {{...}}}}')
+    unit = fmu.description.modelName
     if content.get("unit") != unit:
         raise ValueError(f"{path} is for {content.get('unit')!r}: expected a file for {unit}")
+    units = content.get("units", {})
+    if not isinstance(units, dict):
+        raise ValueError(f'{path}: expected "units": {{...}}')
+    for name, given in units.items():
+        if name not in content["values"]:
+            raise ValueError(f"{path}: {name!r} has a unit and no value")
+        expected = fmu.unit_text(name, content["values"][name])
+        if given != expected:
+            raise ValueError(f"{name} is given in {given!r}: expected {expected}")
     return content["values"]
+
+
+def _is_32_bit(number: object) -> bool:
+    """Whether a number is a whole one of 32 bits."""
+    return isinstance(number, int) and -(2**31) <= number < 2**31
 
 
 def _unique(pairs: list[tuple[str, object]]) -> dict[str, object]:

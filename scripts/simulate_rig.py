@@ -98,7 +98,7 @@ def initialize(plant: Fmu, controller: Fmu, options: argparse.Namespace) -> None
         held / float(plant.variables["initial.position"].start)
     )
     if options.parameters:
-        values |= parameter_values(options.parameters, controller.description.modelName)
+        values |= parameter_values(options.parameters, controller)
     controller.initialize(values, stop_time=options.stop_time)
 
 

@@ -193,6 +193,20 @@ fn nothing_is_put_beside_a_device() {
     assert_eq!([names(Path::new("/dev")), names(directory.path())], before);
 }
 
+/// Guards: a parameter file that took the place of its own picture.
+#[test]
+fn a_parameter_file_is_none_of_the_files_beside_it() {
+    let directory = tempfile::tempdir().unwrap();
+    for file in ["q.png", "q.svg", "q.CSV"] {
+        let arguments = ["tune", "--particles", "2", "--iterations", "1", "--out", file];
+        let output = maglev_fmu(directory.path(), &arguments).output().unwrap();
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{file}: {message}");
+        assert!(message.contains("expected another one, such as .json"), "{message}");
+    }
+    assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 0);
+}
+
 /// Guards: a panic in the random numbers, after some thousand iterations that were lost with it.
 #[test]
 fn a_diverging_search_ends_with_what_it_has() {

@@ -43,7 +43,7 @@ pub struct Tune {
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     /// Parameter file to write [default: results/rig-OBSERVER-OBJECTIVE.json]
-    #[arg(long, value_name = "FILE", value_parser = PathBufValueParser::new().try_map(with_room_beside))]
+    #[arg(long, value_name = "FILE", value_parser = PathBufValueParser::new().try_map(parameter_file))]
     out: Option<PathBuf>,
 }
 
@@ -71,6 +71,20 @@ enum Swarm {
     Constriction,
     /// Inertia 1 and c1 = c2 = 1.5 as in the paper's Table 2, nothing clamped: diverges
     Printed,
+}
+
+/// A file that the files put beside it, which have the same name but for the ending, do not overwrite.
+fn parameter_file(path: PathBuf) -> Result<PathBuf, String> {
+    let beside = output::FIGURE_ENDINGS;
+    match path
+        .extension()
+        .and_then(|ending| beside.into_iter().find(|taken| ending.eq_ignore_ascii_case(taken)))
+    {
+        Some(taken) => {
+            Err(format!("the picture's files have the ending .{taken}: expected another one, such as .json"))
+        }
+        None => with_room_beside(path),
+    }
 }
 
 fn noise(text: &str) -> Result<f64, String> {

@@ -89,12 +89,12 @@ impl CommunicationPoint {
     #[cold]
     fn duration_after_gap(&self, point: f64, step_size: f64) -> Result<f64, CallError> {
         let gap = point - self.now;
-        // Times round by their own size and that of those before, be the step as long as it likes.
+        // Times round by their own size, be the step as long as it likes; where they come to 0, by that of those before.
         let largest_time = point.abs().max(self.now.abs());
-        let span = step_size.min(largest_time.max(self.drift / HALF_A_UNIT));
-        if gap.abs() <= ROUNDING * largest_time.max(span) {
+        let rounding = (ROUNDING * largest_time).max(self.drift.min(ROUNDING * step_size));
+        if gap.abs() <= rounding {
             Ok(step_size)
-        } else if gap.abs() <= TOLERANCE * span {
+        } else if gap.abs() <= TOLERANCE * step_size.min(largest_time) {
             Ok(step_size + gap)
         } else {
             Err(CallError::TimeDoesNotFollow { got: point, expected: self.now })
@@ -152,6 +152,16 @@ mod tests {
         for (time, step_size) in long.into_iter().chain(short) {
             let refused = point.duration(time, step_size);
             assert_eq!(refused, Err(CallError::TimeDoesNotFollow { got: time, expected: 1e-3 }));
+        }
+        // However many steps went before.
+        let mut point = CommunicationPoint::new(0.0, None);
+        (1..=1_000_000).for_each(|k| point.move_to(f64::from(k) * 1e-3));
+        for (gap, step_size) in [(0.2, 1e9), (1e-5, 1e9), (1e-5, 1e300), (1e-7, 1e-3)] {
+            let refused = point.duration(1000.0 + gap, step_size);
+            assert!(
+                matches!(refused, Err(CallError::TimeDoesNotFollow { .. })),
+                "{gap} {step_size}: {refused:?}"
+            );
         }
         // Where time comes to 0, sums have rounded by more than the time itself.
         let mut point = CommunicationPoint::new(-1.0, None);

@@ -11,6 +11,10 @@ use thiserror::Error;
 pub enum CallError {
     #[error("not allowed in the phase \"{0}\"")]
     WrongPhase(&'static str),
+    #[error(
+        "ended by its callback, which has reset the instance or restored a state of it in the phase \"{0}\""
+    )]
+    LeftByCallback(&'static str),
     #[error("the argument {0} is a null pointer")]
     NullPointer(&'static str),
     #[error("{argument} = {got}: expected {expected}, one value per value reference")]

@@ -1,5 +1,7 @@
 //! Times as fractions, as FMI 3.0 wants them for clocks.
 
+use core::fmt::{self, Write};
+
 /// The first convergent of the continued fraction of `value` whose quotient is exactly `value`, which is not negative:
 /// 1/1000 for 0.001, although no double is a thousandth; for a decimal number of many digits a shorter fraction that is
 /// the same double. None if 64 bits are too few.
@@ -36,11 +38,59 @@ pub(super) fn fraction(value: f64) -> Option<(u64, u64)> {
     None
 }
 
+/// The decimal number of at most 15 digits whose double is exactly `value`, which is not negative, as a fraction in lowest
+/// terms: what somebody has typed, if it was that. None if there is no such number, or if 64 bits are too few.
+fn decimal_fraction(value: f64) -> Option<(u64, u64)> {
+    const DIGITS: usize = 15;
+    let mut text = ShortText::default();
+    // The fewest digits that tell the double from all others.
+    write!(text, "{value:e}").ok()?;
+    let (digits, exponent) = text.as_str()?.split_once('e')?;
+    let (whole, decimals) = digits.split_once('.').unwrap_or((digits, ""));
+    if whole.len() + decimals.len() > DIGITS {
+        return None;
+    }
+    let exponent = exponent.parse::<i32>().ok()? - decimals.len() as i32;
+    let power = 10u64.checked_pow(exponent.unsigned_abs())?;
+    let decimals_value = if decimals.is_empty() { 0 } else { decimals.parse::<u64>().ok()? };
+    let counter = whole.parse::<u64>().ok()? * 10u64.pow(decimals.len() as u32) + decimals_value;
+    if exponent >= 0 {
+        return Some((counter.checked_mul(power)?, 1));
+    }
+    let divisor = greatest_common_divisor(counter.into(), power.into()) as u64;
+    Some((counter / divisor, power / divisor))
+}
+
+/// A double in decimals, without the heap.
+#[derive(Default)]
+struct ShortText {
+    bytes: [u8; 32],
+    length: usize,
+}
+
+impl ShortText {
+    fn as_str(&self) -> Option<&str> {
+        core::str::from_utf8(&self.bytes[..self.length]).ok()
+    }
+}
+
+impl fmt::Write for ShortText {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        let end = self.length + text.len();
+        self.bytes.get_mut(self.length..end).ok_or(fmt::Error)?.copy_from_slice(text.as_bytes());
+        self.length = end;
+        Ok(())
+    }
+}
+
 /// Time from `start` to `number * period`, all in s, as a fraction of whole numbers in lowest terms: exact for the decimal
 /// numbers that `start` and `period` stand for, 0 if it is negative. None if 64 bits are too few.
 pub(super) fn time_from(start: f64, number: i64, period: f64) -> Option<(u64, u64)> {
-    let (period_counter, period_resolution) = fraction(period)?;
-    let (start_counter, start_resolution) = fraction(start.abs())?;
+    let exactly = |value| decimal_fraction(value).or_else(|| fraction(value));
+    // Less than what a multiple of the period is rounded by.
+    let start = if start.abs() < f64::EPSILON * period { 0.0 } else { start };
+    let (period_counter, period_resolution) = exactly(period)?;
+    let (start_counter, start_resolution) = exactly(start.abs())?;
     let signed = |counter: u64| i128::from(counter) * if start < 0.0 { -1 } else { 1 };
     let tick = i128::from(number).checked_mul(period_counter.into())?.checked_mul(start_resolution.into())?;
     let start = signed(start_counter).checked_mul(period_resolution.into())?;
@@ -92,6 +142,14 @@ mod tests {
             (0.0, 0, 1e-3, (0, 1)),
             (2e-3, 2, 1e-3, (0, 1)),
             (0.001_000_000_01, 1, 1e-3, (0, 1)),
+            (123_456.789_123_4, 123_456_790, 1e-3, (4383, 5_000_000)),
+            (0.123_456_789_1, 123_457, 1e-6, (2109, 10_000_000_000)),
+            (1e-300, 0, 1e-3, (0, 1)),
+            (-5e-324, 1, 1e-3, (1, 1000)),
+            (100.0, 100_001, 1e-3, (1, 1000)),
+            // No decimal number of few digits.
+            (0.0, 1, 1.0 / 60.0, (1, 60)),
+            (0.0, 7, 1.0 / 3.0, (7, 3)),
         ] {
             assert_eq!(time_from(start, number, period), Some(expected), "{start} {number} {period}");
         }
@@ -107,6 +165,16 @@ mod tests {
                 let rounding = 4.0 * f64::EPSILON * (number as f64 * period + start);
                 prop_assert!((counter as f64 / resolution as f64 - expected).abs() <= rounding);
             }
+        }
+
+        #[test]
+        fn decimal_numbers_are_themselves(counter in 1u64..1_000_000_000_000_000, decimals in 0u32..15) {
+            let value: f64 = format!("{counter}e-{decimals}").parse().unwrap();
+            let (found, resolution) = super::decimal_fraction(value).unwrap();
+            prop_assert_eq!(
+                u128::from(found) * 10u128.pow(decimals),
+                u128::from(counter) * u128::from(resolution)
+            );
         }
 
         #[test]

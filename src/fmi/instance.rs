@@ -77,6 +77,8 @@ impl Instance {
     pub(super) fn require(&self, function: &Function) -> Result<(), CallError> {
         if function.is_allowed_in(self.phase) {
             Ok(())
+        } else if function.is_back_from_callback {
+            Err(CallError::LeftByCallback(self.phase.name()))
         } else {
             Err(CallError::WrongPhase(self.phase.name()))
         }

@@ -54,6 +54,8 @@ impl Phase {
 pub struct Function {
     pub name: &'static str,
     phases: u16,
+    /// The importer has called it and has come back to it from a callback.
+    pub is_back_from_callback: bool,
 }
 
 impl Function {
@@ -64,7 +66,12 @@ impl Function {
             bits |= phases[index] as u16;
             index += 1;
         }
-        Self { name, phases: bits }
+        Self { name, phases: bits, is_back_from_callback: false }
+    }
+
+    /// What is left of a function after its callback, which may leave the instance in these phases.
+    pub const fn after_callback(name: &'static str, phases: &[Phase]) -> Self {
+        Self { is_back_from_callback: true, ..Self::new(name, phases) }
     }
 
     #[inline]

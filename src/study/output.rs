@@ -35,14 +35,18 @@ pub fn write(directory: &Path, findings: &[Findings]) -> Result<PathBuf, StudyEr
     Ok(path)
 }
 
+/// Endings of the files of a figure.
+pub const FIGURE_ENDINGS: [&str; 3] = ["svg", "png", "csv"];
+
 /// Writes a figure as SVG and PNG and its data as CSV and returns the SVG.
 pub fn write_figure(directory: &Path, figure: &FigureWithData) -> Result<String, StudyError> {
     make_directory(directory)?;
     let svg = chart::svg(&figure.figure)?;
-    let file = |extension: &str| directory.join(format!("{}.{extension}", figure.name));
-    write_file(&file("svg"), svg.as_bytes())?;
-    write_file(&file("png"), &chart::png(&figure.figure, &svg)?)?;
-    write_file(&file("csv"), &csv(&figure.table)?)?;
+    let [as_svg, as_png, as_csv] =
+        FIGURE_ENDINGS.map(|ending| directory.join(format!("{}.{ending}", figure.name)));
+    write_file(&as_svg, svg.as_bytes())?;
+    write_file(&as_png, &chart::png(&figure.figure, &svg)?)?;
+    write_file(&as_csv, &csv(&figure.table)?)?;
     Ok(svg)
 }
 

@@ -65,7 +65,8 @@ impl Sensor {
     /// A sensor at `start_time` \[s\], where it is about to be read.
     pub(super) fn start(seed: f64, sample_time: f64, start_time: f64) -> Result<Self, UnitError> {
         let mut clock = None;
-        if sample_time > 0.0 {
+        // What is refused in the end may stand there meanwhile, and all else be read.
+        if sample_time >= SHORTEST_SAMPLE_TIME {
             let mut ticking = SampleClock::starting(sample_time, start_time)?;
             ticking.advance_through(0.0);
             clock = Some(ticking);
@@ -164,7 +165,7 @@ impl Sensor {
     pub(super) fn belongs_to(&self, sample_time: f64) -> bool {
         match self.clock {
             Some(clock) => clock.may_stand_where_it_does(sample_time),
-            None => sample_time == 0.0,
+            None => sample_time < SHORTEST_SAMPLE_TIME,
         }
     }
 }

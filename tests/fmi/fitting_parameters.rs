@@ -1,7 +1,7 @@
 //! Parameters that do not fit together are refused when they are complete, at the end of initialisation or when a tunable
 //! one is set afterwards, and not at the first step.
 
-use super::harness::{BOTH, Component, OK};
+use super::harness::{BOTH, Component, OK, plants};
 
 #[test]
 fn equal_prefilters_end_no_initialisation() {
@@ -21,6 +21,22 @@ fn equal_prefilters_end_no_initialisation() {
         assert_eq!(component.set("observer.prefilter[1]", 300.0), OK);
         assert_eq!(component.exit_initialization(), OK);
         assert_eq!(component.step(0.0, 1e-3), OK);
+    }
+}
+
+#[test]
+fn a_sample_time_too_short_hides_nothing_until_it_is_refused() {
+    for (standard, unit) in plants() {
+        let component = Component::new(standard, unit);
+        assert_eq!(component.set("sensor.sample_time", 1e-12), OK);
+        assert_eq!(component.enter_initialization(1e5, None), OK);
+        assert_eq!(component.get("sensor.sample_time"), 1e-12);
+        assert!(component.get("initial.position").is_finite());
+        component.recorder.clear();
+        let said = "sensor.sample_time = 1e-12 s: expected 0 or at least 1e-6 s";
+        component.assert_refused(component.exit_initialization(), &[said]);
+        assert_eq!(component.set("sensor.sample_time", 0.0), OK);
+        assert_eq!(component.exit_initialization(), OK);
     }
 }
 

@@ -4,7 +4,7 @@ use core::cell::RefCell;
 use core::ffi::c_void;
 
 use maglev_fmu::fmi::fmi3::types::fmi3Boolean;
-use maglev_fmu::fmi::fmi3::{fmi3DoStep, fmi3GetFloat64, fmi3SetFloat64, fmi3SetInt64};
+use maglev_fmu::fmi::fmi3::{fmi3DoStep, fmi3GetFloat64, fmi3Reset, fmi3SetFloat64, fmi3SetInt64};
 
 use super::harness::clocked::Choices;
 use super::harness::{CONTROLLER, Component, ERROR, OK, PLANT, Standard};
@@ -160,4 +160,33 @@ fn steps_that_are_refused_call_nobody() {
     }
     assert_eq!(component.snapshot(), before);
     assert!(SCRIPT.with_borrow(|script| script.times.is_empty()));
+}
+
+unsafe extern "C-unwind" fn resetting(
+    _: *mut c_void,
+    _: f64,
+    _: fmi3Boolean,
+    _: fmi3Boolean,
+    _: fmi3Boolean,
+    _: fmi3Boolean,
+    _: *mut fmi3Boolean,
+    _: *mut f64,
+) {
+    // SAFETY: the instance lives and waits.
+    assert_eq!(unsafe { fmi3Reset(SCRIPT.with_borrow(|script| script.handle) as *mut c_void) }, OK);
+}
+
+#[test]
+fn a_callback_that_resets_the_instance_ends_the_step() {
+    let choices = Choices { intermediate_update: Some(resetting), ..Choices::default() };
+    let component = Component::co_simulation(CONTROLLER, choices);
+    component.initialise(0.0);
+    SCRIPT.set(Script { handle: component.handle as usize, ..Script::default() });
+    component.recorder.clear();
+    assert_eq!(component.step(0.0, 0.01), ERROR);
+    let told = component.recorder.messages().pop().unwrap().text;
+    assert!(told.starts_with("fmi3DoStep: ended by its callback, which has reset"), "{told}");
+    component.initialise(0.0);
+    // None of the callbacks is due before the second tick.
+    assert_eq!(component.step(0.0, 1e-3), OK);
 }

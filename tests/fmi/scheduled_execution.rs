@@ -209,6 +209,23 @@ fn the_callback_may_ask_for_the_clock() {
     component.assert_refused(component.get_clock(ticked).0, &["fmi3GetClock", "clock activation mode"]);
 }
 
+unsafe extern "C-unwind" fn resetting(_: *mut c_void) {
+    // SAFETY: the handle lives.
+    assert_eq!(unsafe { fmi3Reset(SUBJECT.get().0) }, OK);
+}
+
+#[test]
+fn a_callback_that_resets_the_instance_ends_the_activation() {
+    let component = Component::scheduled(CONTROLLER, Some(resetting));
+    component.initialise(0.0);
+    SUBJECT.set((component.handle, component.clocks()[1]));
+    component.recorder.clear();
+    assert_eq!(component.activate(0.0), ERROR);
+    let told = component.recorder.messages().pop().unwrap().text;
+    assert!(told.starts_with("fmi3ActivateModelPartition: ended by its callback, which has reset"), "{told}");
+    component.initialise(0.0);
+}
+
 #[test]
 fn states_stay_among_scheduled_instances() {
     let component = Component::scheduled(CONTROLLER, None);

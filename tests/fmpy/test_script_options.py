@@ -57,9 +57,9 @@ def assert_refused(outcome: Outcome, status: int, *messages: str) -> None:
         assert message in outcome.message
 
 
-def run_program(script: str, stdout: object) -> Outcome:
+def run_program(script: str, stdout: object, *options: str) -> Outcome:
     """Runs a script as a program of its own, with its output to a file."""
-    command = [sys.executable, REPOSITORY / "scripts" / f"{script}.py", "--dist", dist(), *SHORT]
+    command = [sys.executable, REPOSITORY / "scripts" / f"{script}.py", "--dist", dist(), *SHORT, *options]
     done = subprocess.run([str(part) for part in command], stdout=stdout, stderr=subprocess.PIPE, text=True, check=False)
     assert "Traceback" not in done.stderr
     return Outcome(done.returncode, "", done.stderr)
@@ -188,6 +188,14 @@ def test_a_full_standard_output_is_an_error(script: str) -> None:
     assert_refused(done, 1, "cannot write to standard output: [Errno 28]")
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")
+@pytest.mark.parametrize("script", SCRIPTS)
+def test_help_that_cannot_be_written_is_an_error(script: str) -> None:
+    with open("/dev/full", "w") as full:
+        done = run_program(script, full, "--help")
+    assert_refused(done, 1, "cannot write to standard output: [Errno 28]")
+
+
 @pytest.mark.parametrize("script", SCRIPTS)
 def test_a_closed_pipe_is_no_error_to_talk_about(script: str) -> None:
     reader, writer = os.pipe()
@@ -212,6 +220,11 @@ UNIT = '"unit": "MaglevRigController"'
         (f'{{{UNIT}, "values": {{"observer.bandwidth": NaN}}}}', "NaN is no number of JSON"),
         (f'{{{UNIT}, "values": {{"observer.bandwidth": "fast"}}}}', "observer.bandwidth = 'fast': expected a value of type Float64"),
         (f'{{{UNIT}, "values": {{"observer.bandwidth": [1]}}}}', "observer.bandwidth = [1]: expected a value"),
+        (f'{{{UNIT}, "values": {{"observer.bandwidth": true}}}}', "observer.bandwidth = True: expected a value of type Float64"),
+        (f'{{{UNIT}, "values": {{"observer.kind": true}}}}', "observer.kind = True: expected a value of type Enumeration"),
+        (f'{{{UNIT}, "values": {{"observer.kind": 99999999999999999999}}}}', "observer.kind = 99999999999999999999: expected a value"),
+        (f'{{{UNIT}, "values": {{"observer.bandwidth": 1}}, "units": {{"observer.bandwidth": "kg"}}}}', "observer.bandwidth is given in 'kg': expected 1/s"),
+        (f'{{{UNIT}, "values": {{}}, "units": {{"sample_time": "s"}}}}', "'sample_time' has a unit and no value"),
         (f'{{{UNIT}, "values": {{"\\u001b[2J": 1}}}}', r"has no variable '\x1b[2J'"),
         ('{"unit": "\\u001b[2J", "values": {}}', r"is for '\x1b[2J': expected a file for MaglevRigController"),
         (f'{{{UNIT}, "values": {{"observer.kind": "\\nlinear"}}}}', r"observer.kind = \nlinear: expected one of"),

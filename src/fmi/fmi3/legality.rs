@@ -178,10 +178,11 @@ pub const GET_OUTPUT_DERIVATIVES: Function =
     Function::new("fmi3GetOutputDerivatives", &[StepMode, IntermediateUpdateMode, Terminated]);
 pub const DO_STEP: Function = Function::new("fmi3DoStep", &[StepMode]);
 /// The importer has returned from the callback within a step.
-pub const RETURN_FROM_INTERMEDIATE_UPDATE: Function = Function::new("fmi3DoStep", &[IntermediateUpdateMode]);
+pub const RETURN_FROM_INTERMEDIATE_UPDATE: Function =
+    Function::after_callback("fmi3DoStep", &[IntermediateUpdateMode]);
 /// The importer has returned from the callback within an activation.
 pub const RETURN_FROM_CLOCK_UPDATE: Function =
-    Function::new("fmi3ActivateModelPartition", &[ClockUpdateMode]);
+    Function::after_callback("fmi3ActivateModelPartition", &[ClockUpdateMode]);
 pub const ACTIVATE_MODEL_PARTITION: Function =
     Function::new("fmi3ActivateModelPartition", &[ClockActivationMode]);
 

@@ -59,6 +59,8 @@ pub enum ParameterFileError {
     WrongKind { name: String, value: Value, expected: String },
     #[error("{} is given in {}: expected {expected}", name.escape_debug(), printable(&given.to_string()))]
     WrongUnit { name: String, given: Value, expected: String },
+    #[error("{} has a unit and no value", name.escape_debug())]
+    UnitWithoutValue { name: String },
     #[error(transparent)]
     StartValue(#[from] StartValueError),
     #[error(transparent)]
@@ -116,6 +118,9 @@ impl ParameterFile {
                     });
                 }
             }
+        }
+        if let Some(name) = self.units.keys().find(|name| !self.values.contains_key(*name)) {
+            return Err(ParameterFileError::UnitWithoutValue { name: name.clone() });
         }
         let mut unit = (unit.create)();
         start_values.apply(&mut *unit);
@@ -245,6 +250,7 @@ mod tests {
         assert!(message(json!({ "observer.kind": "luenberger" }), json!({})).contains("one of newton"));
         let wrong_unit = message(json!({ "sample_time": 0.5 }), json!({ "sample_time": "ms" }));
         assert_eq!(wrong_unit, "sample_time is given in \"ms\": expected s");
+        assert_eq!(message(json!({}), json!({ "sample_time": "s" })), "sample_time has a unit and no value");
         let unknown = ParameterFile { unit: "Pendulum".to_owned(), ..file(json!({}), json!({})) };
         assert!(unknown.start_values().unwrap_err().to_string().contains("MagneticBearingController"));
     }

@@ -193,9 +193,16 @@ impl Oracle<'_> {
                 if model.has_event {
                     found.push("step-with-an-event-left");
                 }
+                let ticks_alone = self.choices.has_events && !self.choices.may_return_early;
+                if ticks_alone && (model.has_event || passes_a_tick(*point, *size, model.sample_time)) {
+                    found.push("ticks-within-a-step");
+                }
             }
             Call::Activate { time, .. } if !is_multiple(*time, model.sample_time) => {
                 found.push("activation-between-ticks");
+            }
+            Call::Timing { function, .. } if function.starts_with("fmi3SetShift") => {
+                return Rule::Declined("shift-not-set");
             }
             Call::SetSlopes { orders, .. } if orders.iter().any(|order| *order > 1) => {
                 return Rule::Declined("first-order-slopes");
@@ -246,6 +253,12 @@ fn is_clearly_below(time: f64, bound: f64) -> bool {
 fn is_multiple(time: f64, sample_time: f64) -> bool {
     let number = time / sample_time;
     (number - number.round()).abs() < 1e-9 * number.abs().max(1.0)
+}
+
+/// Whether a multiple of the sample time lies clearly within a step.
+fn passes_a_tick(point: f64, size: f64, sample_time: f64) -> bool {
+    let [begin, end] = [point, point + size].map(|time| time / sample_time);
+    (end - 1e-6).floor() > (begin + 1e-6).floor()
 }
 
 fn is_null_for_nothing(call: &Call) -> bool {
