@@ -43,10 +43,10 @@ pub(super) fn check_sample_time(value: f64) -> Result<(), UnitError> {
     Err(UnitError::Unusable { name: NAME, value, unit: DURATION.unit.name, expected })
 }
 
-/// A `value` with noise of the standard deviation `deviation`; `sample` has that of 1.
+/// A `value` with noise of the standard deviation `deviation`; `sample` has that of 1, or is 0 where there is none.
 #[inline]
 pub(super) fn noisy<S: Scalar>(value: S, deviation: S, sample: S) -> S {
-    if deviation.is_zero() { value } else { value + deviation * sample }
+    if sample.is_zero() { value } else { value + deviation * sample }
 }
 
 /// Noise, and the clock of the readings if they have one.
