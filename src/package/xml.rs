@@ -23,21 +23,15 @@ pub fn document(
     attributes: impl IntoIterator<Item = Attribute>,
     content: impl FnOnce(&mut Writer) -> io::Result<()>,
 ) -> String {
-    write_document(root, attributes, content).expect("memory takes all bytes, and names and values are text")
-}
-
-/// As [`document`], with the errors of writing, of which there are none in memory.
-fn write_document(
-    root: &str,
-    attributes: impl IntoIterator<Item = Attribute>,
-    content: impl FnOnce(&mut Writer) -> io::Result<()>,
-) -> io::Result<String> {
     let mut writer = Writer::new_with_indent(Vec::new(), b' ', 2);
-    writer.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
-    element(&mut writer, root, attributes, content)?;
-    let mut text = String::from_utf8(writer.into_inner()).map_err(io::Error::other)?;
+    let declaration = Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None));
+    writer
+        .write_event(declaration)
+        .and_then(|()| element(&mut writer, root, attributes, content))
+        .expect("memory takes every byte");
+    let mut text = String::from_utf8(writer.into_inner()).expect("names and values are text");
     text.push('\n');
-    Ok(text)
+    text
 }
 
 /// Writes the element `name` with what `content` writes inside.

@@ -1,4 +1,4 @@
-//! What the structure of a system and its parameter sets share (SSP 1.0.1 and 2.0, section 4).
+//! What the structure of a system and its parameter sets share (SSP 1.0.1 and 2.0, schema SystemStructureCommon).
 
 use std::io;
 
