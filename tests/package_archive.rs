@@ -101,7 +101,7 @@ fn archives_hold_what_the_standards_name() {
             assert_eq!(names, expected);
 
             let time = Some(GenerationTime::from_epoch_seconds(TIME));
-            let description = model_description(unit.description, StartValues::TABLE, form, time).unwrap();
+            let description = model_description(unit.description, StartValues::TABLE, form, time);
             assert_eq!(file(&mut archive, "modelDescription.xml"), description.as_bytes());
             for icon in own_icon.into_iter().chain(["terminalsAndIcons/icon.png"]) {
                 assert!(file(&mut archive, icon).starts_with(b"\x89PNG\r\n\x1a\n"));

@@ -15,7 +15,7 @@ fn root() -> &'static Path {
 
 #[test]
 fn model_descriptions_are_up_to_date() {
-    for (path, text) in checked_in_files().unwrap() {
+    for (path, text) in checked_in_files() {
         let checked_in = fs::read_to_string(root().join(&path)).unwrap_or_default();
         // A checkout may have changed the ends of lines.
         assert!(
@@ -29,7 +29,7 @@ fn model_descriptions_are_up_to_date() {
 #[test]
 fn no_model_description_is_left_over() {
     let expected: BTreeSet<PathBuf> =
-        checked_in_files().unwrap().into_iter().map(|(path, _)| root().join(path)).collect();
+        checked_in_files().into_iter().map(|(path, _)| root().join(path)).collect();
     for form in Form::ALL {
         for file in fs::read_dir(root().join("modelDescription").join(form.directory())).unwrap() {
             let path = file.unwrap().path();
@@ -51,7 +51,7 @@ fn readme_tables_are_up_to_date() {
 fn describe_writes_what_is_checked_in() {
     let directory = tempfile::tempdir().unwrap();
     let (written, _) = describe(directory.path()).unwrap();
-    let expected = checked_in_files().unwrap();
+    let expected = checked_in_files();
     assert_eq!(written.len(), expected.len());
     for (path, text) in expected {
         assert_eq!(fs::read_to_string(directory.path().join(path)).unwrap(), text);

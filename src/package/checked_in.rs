@@ -24,23 +24,23 @@ pub enum Readme {
 }
 
 /// Path below the repository's root and text of each checked-in model description.
-pub fn checked_in_files() -> Result<Vec<(PathBuf, String)>, PackageError> {
+pub fn checked_in_files() -> Vec<(PathBuf, String)> {
     let mut files = Vec::new();
     for unit in UNITS {
         let description = unit.description;
         for form in Form::all_of(description) {
             let folder = Path::new("modelDescription").join(form.directory());
-            let text = model_description(description, StartValues::TABLE, form, None)?;
+            let text = model_description(description, StartValues::TABLE, form, None);
             files.push((folder.join(description.name).with_extension("xml"), text));
         }
     }
-    Ok(files)
+    files
 }
 
 /// Writes all checked-in model descriptions and the README's tables below `root`.
 pub fn describe(root: &Path) -> Result<(Vec<WrittenFile>, Readme), PackageError> {
     let mut written = Vec::new();
-    for (path, text) in checked_in_files()? {
+    for (path, text) in checked_in_files() {
         let path = root.join(path);
         if let Some(directory) = path.parent() {
             fs::create_dir_all(directory)

@@ -48,7 +48,7 @@ pub fn contents<'a>(
 ) -> Result<Vec<Entry<'a>>, PackageError> {
     let name = description.name;
     let mut files: Vec<(&str, Cow<'a, [u8]>)> = vec![
-        ("modelDescription.xml", owned(model_description(description, start_values, form, Some(time))?)),
+        ("modelDescription.xml", owned(model_description(description, start_values, form, Some(time)))),
         ("documentation/index.html", owned(documentation(description, start_values, form, Some(time)))),
         ("documentation/licenses/license.txt", Cow::Borrowed(licenses::LICENSE.as_bytes())),
         ("documentation/licenses/THIRD-PARTY.txt", Cow::Borrowed(licenses::THIRD_PARTY.as_bytes())),
@@ -57,7 +57,7 @@ pub fn contents<'a>(
     files.extend([
         ("terminalsAndIcons/icon.png", Cow::Owned(icon_png(name)?)),
         ("terminalsAndIcons/icon.svg", Cow::Borrowed(icon_svg(name)?.as_bytes())),
-        ("terminalsAndIcons/terminalsAndIcons.xml", owned(terminals_and_icons(description)?)),
+        ("terminalsAndIcons/terminalsAndIcons.xml", owned(terminals_and_icons(description))),
     ]);
     if form.version == FmiVersion::Two {
         files.push(("model.png", Cow::Owned(icon_png(name)?)));
@@ -71,8 +71,7 @@ pub fn contents<'a>(
     let run = ReferenceRun::of(description, start_values)
         .map_err(|source| PackageError::ReferenceRun { unit: name, source })?;
     entries.push(Entry::document(format!("documentation/{RUN_FIGURE}"), owned(run_figure(&run))));
-    let related = related_files(description, &run)?;
-    entries.extend(related.map(|(path, text)| Entry::document(path, owned(text))));
+    entries.extend(related_files(&run).map(|(path, text)| Entry::document(path, owned(text))));
     entries.extend(libraries.iter().map(|library| {
         let platform = library.platform();
         Entry {

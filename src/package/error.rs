@@ -18,14 +18,8 @@ pub enum PackageError {
     Write { path: PathBuf, source: std::io::Error },
     #[error("cannot compress {}", .path.display())]
     Archive { path: PathBuf, source: zip::result::ZipError },
-    #[error("cannot write the FMI {version} model description of {unit}")]
-    ModelDescription { unit: &'static str, version: FmiVersion, source: quick_xml::SeError },
     #[error("cannot list the crates in the shared library")]
     ThirdParty(#[from] ThirdPartyError),
-    #[error("cannot write the manifest of related files of {unit}")]
-    Manifest { unit: &'static str, source: quick_xml::SeError },
-    #[error("cannot write the system structure of {system}")]
-    SystemStructure { system: &'static str, source: quick_xml::SeError },
     #[error("a unit of the system {system} cannot start as the table of systems says")]
     SystemStart { system: &'static str, source: StartValueError },
     #[error("cannot compute the reference output of {unit}")]

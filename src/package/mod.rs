@@ -25,6 +25,7 @@ mod run_figure;
 mod system_structure;
 mod third_party;
 mod variable_text;
+mod xml;
 
 use std::fs;
 use std::path::{Path, PathBuf};

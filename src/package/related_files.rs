@@ -4,83 +4,57 @@
 //! fmi-ls-ref), which holds for FMI 2.0 and FMI 3.0. The draft names the roles of files but no format for signals:
 //! here they are comma-separated values with one row per communication point.
 
-use serde::Serialize;
-
-use super::PackageError;
-use super::model_description::document;
 use super::reference_run::ReferenceRun;
-use crate::unit::Description;
+use super::xml::{attribute, document, empty_element};
 
 /// Directory that the layered standard prescribes.
 pub const DIRECTORY: &str = "extra/org.fmi-standard.fmi-ls-ref";
 pub const INPUT: &str = "reference-input.csv";
 pub const OUTPUT: &str = "reference-output.csv";
 
-#[derive(Serialize)]
-struct References {
-    #[serde(rename = "@xmlns:fmi-ls")]
-    namespace: &'static str,
-    #[serde(rename = "@fmi-ls:fmi-ls-name")]
-    name: &'static str,
-    #[serde(rename = "@fmi-ls:fmi-ls-version")]
-    version: &'static str,
-    #[serde(rename = "@fmi-ls:fmi-ls-description")]
-    description: &'static str,
-    #[serde(rename = "Related")]
-    related: Vec<Related>,
-}
-
-#[derive(Serialize)]
-struct Related {
-    #[serde(rename = "@type")]
-    media_type: &'static str,
-    #[serde(rename = "@source")]
-    source: &'static str,
-    #[serde(rename = "@role")]
-    role: &'static str,
-    #[serde(rename = "@description")]
-    description: String,
-}
-
 /// Paths in the package and contents of the reference input, the reference output and their manifest.
-pub fn related_files(
-    description: &'static Description,
-    run: &ReferenceRun,
-) -> Result<[(String, String); 3], PackageError> {
-    let step_size = run.step_size;
-    let manifest = References {
-        namespace: "http://fmi-standard.org/fmi-ls-manifest",
-        name: "org.fmi-standard.fmi-ls-ref",
-        version: "1.0.0-alpha.1",
-        description: "Layered Standard providing information on related files included in an FMU.",
-        related: vec![
-            Related {
-                media_type: "text/csv",
-                source: INPUT,
-                role: "testcase",
-                description: format!(
-                    "Inputs, each row held over the co-simulation step of {step_size:?} s that begins at its time; \
-                     parameters have their start values"
-                ),
-            },
-            Related {
-                media_type: "text/csv",
-                source: OUTPUT,
-                role: "result",
-                description: format!(
-                    "Outputs after initialization and after each step of {step_size:?} s with {INPUT}, to the last bit"
-                ),
-            },
-            Related {
-                media_type: "text/html",
-                source: "../../documentation/index.html",
-                role: "document",
-                description: "What the unit models, its variables and how to wire it".to_owned(),
-            },
-        ],
-    };
-    let manifest = document("fmiReferences", &manifest)
-        .map_err(|source| PackageError::Manifest { unit: description.name, source })?;
-    Ok([("fmi-ls-manifest.xml", manifest), (INPUT, run.inputs.csv()), (OUTPUT, run.outputs.csv())]
-        .map(|(name, text)| (format!("{DIRECTORY}/{name}"), text)))
+pub fn related_files(run: &ReferenceRun) -> [(String, String); 3] {
+    let files = [
+        ("fmi-ls-manifest.xml", manifest(run.step_size)),
+        (INPUT, run.inputs.csv()),
+        (OUTPUT, run.outputs.csv()),
+    ];
+    files.map(|(name, text)| (format!("{DIRECTORY}/{name}"), text))
+}
+
+/// The manifest, with the communication step \[s\] of the reference run.
+fn manifest(step_size: f64) -> String {
+    let attributes = [
+        attribute("xmlns:fmi-ls", "http://fmi-standard.org/fmi-ls-manifest"),
+        attribute("fmi-ls:fmi-ls-name", "org.fmi-standard.fmi-ls-ref"),
+        attribute("fmi-ls:fmi-ls-version", "1.0.0-alpha.1"),
+        attribute(
+            "fmi-ls:fmi-ls-description",
+            "Layered Standard providing information on related files included in an FMU.",
+        ),
+    ];
+    let inputs = format!(
+        "Inputs, each row held over the co-simulation step of {step_size:?} s that begins at its time; parameters \
+         have their start values"
+    );
+    let outputs = format!(
+        "Outputs after initialization and after each step of {step_size:?} s with {INPUT}, to the last bit"
+    );
+    let page = "What the unit models, its variables and how to wire it".to_owned();
+    let related = [
+        ("text/csv", INPUT, "testcase", inputs),
+        ("text/csv", OUTPUT, "result", outputs),
+        ("text/html", "../../documentation/index.html", "document", page),
+    ];
+    document("fmiReferences", attributes, |writer| {
+        related.into_iter().try_for_each(|(media_type, source, role, description)| {
+            let attributes = [
+                attribute("type", media_type),
+                attribute("source", source),
+                attribute("role", role),
+                attribute("description", description),
+            ];
+            empty_element(writer, "Related", attributes)
+        })
+    })
 }

@@ -1,170 +1,158 @@
-//! Elements that are the same in both standards.
+//! Elements and attributes that are the same in FMI 2.0 and FMI 3.0.
 
-use serde::Serialize;
+use std::{io, ptr};
 
-use super::roles::literal;
+use super::roles::{self, Dependencies};
 use crate::fmi::LOG_CATEGORIES;
-use crate::unit::Description;
-use crate::unit::quantity::{Enumeration, Quantity, RATIO, UnitOfMeasure};
-use crate::unit::variable::Kind;
+use crate::package::xml::{Attribute, Writer, attribute, element, empty_element, optional, real};
+use crate::unit::quantity::{Enumeration, Quantity, UnitOfMeasure};
+use crate::unit::variable::{Kind, Variable};
+use crate::unit::{Description, StartValues};
 
-/// Program that wrote the file.
-pub const GENERATION_TOOL: &str = concat!("maglev-fmu ", env!("CARGO_PKG_VERSION"));
-pub const VERSION: &str = env!("CARGO_PKG_VERSION");
-
-/// A real number in XML, with all its digits.
-pub fn real(value: f64) -> String {
-    literal(Kind::Real(&RATIO), value)
+/// Quantities of some variables, each once, in the order of their first use.
+pub fn quantities<'a>(variables: impl IntoIterator<Item = &'a Variable>) -> Vec<&'static Quantity> {
+    distinct(variables.into_iter().filter_map(|variable| match variable.kind {
+        Kind::Real(quantity) => Some(quantity),
+        _ => None,
+    }))
 }
 
-/// Quantities of a unit's variables, in the order of their first use.
-pub fn quantities(description: &Description) -> Vec<&'static Quantity> {
-    let mut found: Vec<&'static Quantity> = Vec::new();
-    for variable in description.variables {
-        if let Kind::Real(quantity) = variable.kind
-            && !found.iter().any(|known| std::ptr::eq(*known, quantity))
-        {
-            found.push(quantity);
-        }
-    }
-    found
+/// Units of measure of some variables, each once, in the order of their first use.
+pub fn units_of_measure<'a>(
+    variables: impl IntoIterator<Item = &'a Variable>,
+) -> Vec<&'static UnitOfMeasure> {
+    distinct(quantities(variables).into_iter().map(|quantity| quantity.unit))
 }
 
-/// Enumerations of a unit's variables, in the order of their first use.
+/// Enumerations of a unit's variables, each once, in the order of their first use.
 pub fn enumerations(description: &Description) -> Vec<&'static Enumeration> {
-    let mut found: Vec<&'static Enumeration> = Vec::new();
-    for variable in description.variables {
-        if let Kind::Enumeration(enumeration) = variable.kind
-            && !found.iter().any(|known| std::ptr::eq(*known, enumeration))
-        {
-            found.push(enumeration);
+    distinct(description.variables.iter().filter_map(|variable| match variable.kind {
+        Kind::Enumeration(enumeration) => Some(enumeration),
+        _ => None,
+    }))
+}
+
+/// Each item once, in the order of first occurrence.
+fn distinct<T>(items: impl Iterator<Item = &'static T>) -> Vec<&'static T> {
+    let mut found: Vec<&'static T> = Vec::new();
+    for item in items {
+        if !found.iter().any(|known| ptr::eq(*known, item)) {
+            found.push(item);
         }
     }
     found
 }
 
-#[derive(Serialize)]
-pub struct UnitDefinitions {
-    #[serde(rename = "Unit")]
-    units: Vec<Unit>,
+/// The attributes of `BaseUnit`: exponents of the SI base units.
+pub fn base_unit(unit: &UnitOfMeasure) -> impl Iterator<Item = (&'static str, i8)> {
+    ["kg", "m", "s", "A"].into_iter().zip(unit.exponents)
 }
 
-#[derive(Serialize)]
-struct Unit {
-    #[serde(rename = "@name")]
-    name: &'static str,
-    #[serde(rename = "BaseUnit")]
-    base: BaseUnit,
-    #[serde(rename = "DisplayUnit", skip_serializing_if = "Option::is_none")]
-    display: Option<DisplayUnit>,
+/// `UnitDefinitions` (FMI 2.0, section 2.2.2; FMI 3.0, section 2.4.3).
+pub fn unit_definitions(writer: &mut Writer, description: &Description) -> io::Result<()> {
+    element(writer, "UnitDefinitions", [], |writer| {
+        units_of_measure(description.variables).into_iter().try_for_each(|unit| unit_definition(writer, unit))
+    })
 }
 
-#[derive(Serialize)]
-struct BaseUnit {
-    #[serde(rename = "@kg", skip_serializing_if = "is_zero")]
-    kilogram: i8,
-    #[serde(rename = "@m", skip_serializing_if = "is_zero")]
-    metre: i8,
-    #[serde(rename = "@s", skip_serializing_if = "is_zero")]
-    second: i8,
-    #[serde(rename = "@A", skip_serializing_if = "is_zero")]
-    ampere: i8,
+/// `Unit` with its exponents and its display unit.
+fn unit_definition(writer: &mut Writer, unit: &UnitOfMeasure) -> io::Result<()> {
+    element(writer, "Unit", [attribute("name", unit.name)], |writer| {
+        let exponents = base_unit(unit).filter(|(_, exponent)| *exponent != 0);
+        let exponents = exponents.map(|(name, exponent)| attribute(name, exponent));
+        empty_element(writer, "BaseUnit", exponents)?;
+        unit.display.into_iter().try_for_each(|(name, factor)| {
+            let attributes = [attribute("name", name), attribute("factor", real(factor))];
+            empty_element(writer, "DisplayUnit", attributes)
+        })
+    })
 }
 
-fn is_zero(exponent: &i8) -> bool {
-    *exponent == 0
+/// Attributes of the type that stands for a quantity (FMI 2.0, section 2.2.3; FMI 3.0, section 2.4.4).
+pub fn quantity_attributes(quantity: &Quantity) -> impl Iterator<Item = Attribute> {
+    let display_unit = quantity.unit.display.map(|(name, _)| name);
+    [attribute("quantity", quantity.name), attribute("unit", quantity.unit.name)]
+        .into_iter()
+        .chain(optional("displayUnit", display_unit))
+        .chain([attribute("nominal", real(quantity.nominal))])
 }
 
-#[derive(Serialize)]
-struct DisplayUnit {
-    #[serde(rename = "@name")]
-    name: &'static str,
-    #[serde(rename = "@factor")]
-    factor: String,
+/// The `Item`s of an enumeration type, numbered from 1 (FMI 2.0, section 2.2.3; FMI 3.0, section 2.4.4).
+pub fn items(writer: &mut Writer, enumeration: &Enumeration) -> io::Result<()> {
+    (1..).zip(enumeration.items).try_for_each(|(value, (name, description))| {
+        let attributes =
+            [attribute("name", name), attribute("value", value), attribute("description", description)];
+        empty_element(writer, "Item", attributes)
+    })
 }
 
-impl UnitDefinitions {
-    pub fn new(description: &Description) -> Self {
-        let mut units: Vec<Unit> = Vec::new();
-        for quantity in quantities(description) {
-            if !units.iter().any(|known| known.name == quantity.unit.name) {
-                units.push(Unit::new(quantity.unit));
-            }
-        }
-        Self { units }
-    }
+/// `LogCategories` (FMI 2.0, section 2.2.4; FMI 3.0, section 2.4.5).
+pub fn log_categories(writer: &mut Writer) -> io::Result<()> {
+    element(writer, "LogCategories", [], |writer| {
+        LOG_CATEGORIES.iter().try_for_each(|(name, description)| {
+            let attributes =
+                [attribute("name", name.to_string_lossy()), attribute("description", description)];
+            empty_element(writer, "Category", attributes)
+        })
+    })
 }
 
-impl Unit {
-    fn new(unit: &UnitOfMeasure) -> Self {
-        let [kilogram, metre, second, ampere] = unit.exponents;
-        Self {
-            name: unit.name,
-            base: BaseUnit { kilogram, metre, second, ampere },
-            display: unit.display.map(|(name, factor)| DisplayUnit { name, factor: real(factor) }),
-        }
-    }
+/// `DefaultExperiment` (FMI 2.0, section 2.2.5; FMI 3.0, section 2.4.6).
+pub fn default_experiment(writer: &mut Writer, description: &Description) -> io::Result<()> {
+    let attributes = [
+        attribute("startTime", real(0.0)),
+        attribute("stopTime", real(description.stop_time)),
+        attribute("stepSize", real(description.step_size)),
+    ];
+    empty_element(writer, "DefaultExperiment", attributes)
 }
 
-/// Named item of an enumeration type.
-#[derive(Serialize)]
-pub struct Item {
-    #[serde(rename = "@name")]
-    name: &'static str,
-    #[serde(rename = "@value")]
-    value: usize,
-    #[serde(rename = "@description")]
-    description: &'static str,
+/// Attributes of a variable of any type (FMI 2.0, section 2.2.7; FMI 3.0, section 2.4.7.4).
+pub fn variable_attributes(value_reference: usize, variable: &Variable) -> impl Iterator<Item = Attribute> {
+    let always = [
+        attribute("name", variable.name),
+        attribute("valueReference", value_reference),
+        attribute("description", variable.description),
+        attribute("causality", roles::causality(variable)),
+        attribute("variability", roles::variability(variable)),
+    ];
+    always.into_iter().chain(optional("initial", roles::initial(variable)))
 }
 
-impl Item {
-    /// All items, numbered from 1.
-    pub fn all(enumeration: &Enumeration) -> Vec<Self> {
-        let numbered = (1..).zip(enumeration.items);
-        numbered.map(|(value, &(name, description))| Self { name, value, description }).collect()
-    }
+/// The attribute `declaredType`.
+pub fn declared_type(variable: &Variable) -> Option<Attribute> {
+    let name = match variable.kind {
+        Kind::Real(quantity) => Some(quantity.name),
+        Kind::Enumeration(enumeration) => Some(enumeration.name),
+        Kind::Integer | Kind::Boolean => None,
+    };
+    optional("declaredType", name)
 }
 
-#[derive(Serialize)]
-pub struct LogCategories {
-    #[serde(rename = "Category")]
-    categories: Vec<Category>,
+/// Attributes that belong to the type of a variable (FMI 2.0, section 2.2.7; FMI 3.0, section 2.4.7.5). Variables are
+/// counted from `first`.
+pub fn value_attributes(
+    description: &Description,
+    value_reference: usize,
+    variable: &Variable,
+    start_values: &StartValues,
+    first: usize,
+) -> impl Iterator<Item = Attribute> {
+    let [minimum, maximum] = roles::range(variable);
+    let state = roles::derivative_of(description, variable);
+    let attributes = [
+        optional("min", minimum),
+        optional("max", maximum),
+        optional("start", roles::start(variable, start_values.of(value_reference, variable))),
+        optional("derivative", state.map(|state| first + state)),
+        optional("reinit", roles::reinit(variable)),
+    ];
+    attributes.into_iter().flatten()
 }
 
-#[derive(Serialize)]
-struct Category {
-    #[serde(rename = "@name")]
-    name: String,
-    #[serde(rename = "@description")]
-    description: &'static str,
-}
-
-impl LogCategories {
-    pub fn new() -> Self {
-        let category = |(name, description): &(&core::ffi::CStr, &'static str)| Category {
-            name: name.to_string_lossy().into_owned(),
-            description,
-        };
-        Self { categories: LOG_CATEGORIES.iter().map(category).collect() }
-    }
-}
-
-#[derive(Serialize)]
-pub struct DefaultExperiment {
-    #[serde(rename = "@startTime")]
-    start_time: String,
-    #[serde(rename = "@stopTime")]
-    stop_time: String,
-    #[serde(rename = "@stepSize")]
-    step_size: String,
-}
-
-impl DefaultExperiment {
-    pub fn new(description: &Description) -> Self {
-        Self {
-            start_time: real(0.0),
-            stop_time: real(description.stop_time),
-            step_size: real(description.step_size),
-        }
-    }
+/// What an unknown of the model structure depends on (FMI 2.0, section 2.2.8; FMI 3.0, section 2.4.8). Variables are
+/// counted from `first`.
+pub fn dependency_attributes(dependencies: &Dependencies, first: usize) -> impl Iterator<Item = Attribute> {
+    let list = attribute("dependencies", dependencies.list(first));
+    [list].into_iter().chain(optional("dependenciesKind", dependencies.kind_list()))
 }

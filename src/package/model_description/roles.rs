@@ -1,6 +1,7 @@
 //! What the standards derive from a variable's causality and variability.
 
 use crate::package::Capabilities;
+use crate::package::xml::real;
 use crate::unit::structure::DependencyKind;
 use crate::unit::variable::{Causality, Kind, Variability, Variable};
 use crate::unit::{Description, Edition};
@@ -57,7 +58,7 @@ pub fn may_be_set_within_a_step(description: &Description, variable: &Variable) 
 /// A value of a variable in XML, with all its digits.
 pub fn literal(kind: Kind, value: f64) -> String {
     match kind {
-        Kind::Real(_) => format!("{value:?}"),
+        Kind::Real(_) => real(value),
         Kind::Boolean => (value != 0.0).to_string(),
         // Integers are written without a decimal point and items of an enumeration by their number.
         Kind::Integer | Kind::Enumeration(_) => format!("{value:.0}"),

@@ -1,11 +1,12 @@
 //! First page of a system's documentation.
 
-use super::SystemForm;
+use super::form::SystemForm;
 use crate::package::GenerationTime;
 use crate::package::contents::diagram_name;
 use crate::package::documentation::STYLE;
 use crate::unit::system::System;
 
+/// The page as HTML.
 pub fn page(system: &System, form: SystemForm, time: GenerationTime) -> String {
     let diagram = diagram_name(system.name);
     let [controller, plant] = [system.controller, system.plant].map(|unit| unit.description);

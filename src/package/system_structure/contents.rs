@@ -1,0 +1,62 @@
+//! The files of the package of a system.
+
+use super::component::Component;
+use super::description::system_structure_description;
+use super::form::SystemForm;
+use super::page::page;
+use super::parameters::parameter_set;
+use crate::package::contents::{Entry, diagram_name, owned};
+use crate::package::loop_diagram::loop_diagram;
+use crate::package::{self, Form, GenerationTime, Library, PackageError, archive};
+use crate::unit::system::System;
+use crate::unit::{Description, StartValues};
+
+/// All files of the package of one system, sorted by path. `start_values` are those that somebody wants other than
+/// the system's.
+pub fn contents(
+    system: &'static System,
+    form: SystemForm,
+    start_values: &[(&'static Description, StartValues)],
+    time: GenerationTime,
+    libraries: &[Library],
+) -> Result<Vec<Entry<'static>>, PackageError> {
+    let structure = system_structure_description(system, form, time);
+    let mut entries = vec![
+        Entry::document("SystemStructure.ssd".to_owned(), owned(structure)),
+        Entry::document("documentation/index.html".to_owned(), owned(page(system, form, time))),
+        Entry::document(
+            format!("documentation/{}", diagram_name(system.name)),
+            owned(loop_diagram(system, None)),
+        ),
+    ];
+    for component in Component::all_of(system) {
+        let description = component.unit.description;
+        let mut values = system
+            .start_values(description)
+            .map_err(|source| PackageError::SystemStart { system: system.name, source })?;
+        if let Some((_, wanted)) = start_values.iter().find(|(unit, _)| std::ptr::eq(*unit, description)) {
+            values = values
+                .overridden_by(wanted)
+                .map_err(|source| PackageError::SystemStart { system: system.name, source: source.into() })?;
+        }
+        let unit = unit_package(description, &values, form.of_units(), time, libraries)?;
+        entries.push(Entry::document(component.unit_path(), unit.into()));
+        let parameters = parameter_set(system, description, &values, form, time);
+        entries.push(Entry::document(component.parameters_path(), owned(parameters)));
+    }
+    entries.sort_by(|a, b| a.path.cmp(&b.path));
+    Ok(entries)
+}
+
+/// The package of a unit as it goes into a system.
+fn unit_package(
+    description: &'static Description,
+    start_values: &StartValues,
+    form: Form,
+    time: GenerationTime,
+    libraries: &[Library],
+) -> Result<Vec<u8>, PackageError> {
+    let entries = package::contents(description, start_values, form, time, libraries)?;
+    let path = || std::path::Path::new(description.name).with_extension("fmu");
+    archive(&entries, time).map_err(|source| PackageError::Archive { path: path(), source })
+}
