@@ -2,11 +2,11 @@
 
 use std::io;
 
-use super::common::{
+use super::roles::{self, Dependencies};
+use super::shared_elements::{
     declared_type, default_experiment, dependency_attributes, enumerations, items, log_categories,
     quantities, quantity_attributes, unit_definitions, value_attributes, variable_attributes,
 };
-use super::roles::{self, Dependencies};
 use crate::package::Capabilities;
 use crate::package::xml::{Attribute, Writer, attribute, element, empty_element, optional};
 use crate::unit::variable::Kind;

@@ -2,9 +2,9 @@
 
 use std::io;
 
-use super::common::data_type;
 use super::component::Component;
 use super::form::SystemForm;
+use super::type_definitions::data_type;
 use crate::package::xml::{Writer, attribute, element, empty_element, optional};
 use crate::unit::variable::{Causality, Variable};
 

@@ -2,11 +2,11 @@
 
 use std::io;
 
-use super::common::{self, units};
 use super::component::Component;
 use super::connectors::{component_connectors, connections, system_connectors};
 use super::experiment::{COSIM_NAMESPACE, OMSIMULATOR_NAMESPACE, default_experiment, system_annotations};
 use super::form::SystemForm;
+use super::type_definitions::{self, units};
 use crate::package::GenerationTime;
 use crate::package::xml::{Writer, attribute, document, element, empty_element, origin};
 use crate::unit::system::System;
@@ -18,7 +18,7 @@ const NAMESPACE: &str = "http://ssp-standard.org/SSP1/SystemStructureDescription
 pub fn system_structure_description(system: &System, form: SystemForm, time: GenerationTime) -> String {
     let attributes = [
         attribute("xmlns:ssd", NAMESPACE),
-        attribute("xmlns:ssc", common::NAMESPACE),
+        attribute("xmlns:ssc", type_definitions::NAMESPACE),
         // Declared here: libcosim takes a declaration on the annotation for part of it.
         attribute("xmlns:osp", COSIM_NAMESPACE),
         attribute("xmlns:oms", OMSIMULATOR_NAMESPACE),

@@ -6,7 +6,6 @@
 //! takes others. Prefixes of namespaces are those of the standard's text; not every importer
 //! resolves others.
 
-mod common;
 mod component;
 mod connectors;
 mod contents;
@@ -15,6 +14,7 @@ mod experiment;
 mod form;
 mod page;
 mod parameters;
+mod type_definitions;
 
 pub use contents::contents;
 pub use form::SystemForm;

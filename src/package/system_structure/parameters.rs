@@ -3,8 +3,8 @@
 //!
 //! Enumerations are left out: of the importers at hand one ends the process and two fail on a set that has any.
 
-use super::common::{self, data_type, units};
 use super::form::SystemForm;
+use super::type_definitions::{self, data_type, units};
 use crate::package::GenerationTime;
 use crate::package::xml::{attribute, document, element, origin};
 use crate::unit::system::System;
@@ -25,7 +25,7 @@ pub fn parameter_set(
     let summary = format!("Parameters of {} at their start values", description.name);
     let attributes = [
         attribute("xmlns:ssv", NAMESPACE),
-        attribute("xmlns:ssc", common::NAMESPACE),
+        attribute("xmlns:ssc", type_definitions::NAMESPACE),
         attribute("version", form.version()),
         // The same for both units: importers apply sets of one name together.
         attribute("name", system.name),
