@@ -22,6 +22,7 @@ pub mod plant;
 pub mod quantity;
 pub mod sample_clock;
 pub mod sampled;
+pub mod sampled_controller;
 mod sensor;
 mod start_delay;
 pub mod start_values;
@@ -214,11 +215,6 @@ pub static UNITS: &[&UnitType] = &[
 pub fn editions() -> impl Iterator<Item = (&'static UnitType, Edition)> {
     let all = UNITS.iter().flat_map(|unit| Edition::ALL.map(|edition| (*unit, edition)));
     all.filter(|(unit, edition)| edition.suits(unit.description))
-}
-
-/// Start values of a table.
-fn start_values<const N: usize>(variables: &[variable::Variable; N]) -> [f64; N] {
-    core::array::from_fn(|reference| variables[reference].start)
 }
 
 #[cfg(test)]

@@ -1,0 +1,64 @@
+//! What a controller says of itself.
+
+use crate::unit::{Description, Journal, UnitError};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+/// Rows that every controller has.
+#[derive(Clone, Copy, Debug)]
+pub struct ControllerRows {
+    pub sample_time: usize,
+    pub start_delay: usize,
+    pub longest_step: usize,
+    /// Time of the last tick.
+    pub tick_time: usize,
+    /// The voltage that the law asks for.
+    pub voltage: usize,
+    /// The voltage that acted, as the plant tells it.
+    pub voltage_applied: usize,
+    /// Which of the two the observer is told.
+    pub voltage_source: usize,
+    /// Item of the latter that means `voltage_applied`.
+    pub applied: f64,
+}
+
+/// A tick.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample {
+    /// \[s\]
+    pub time: f64,
+    /// The first one since initialisation, or since the end of the start delay.
+    pub is_first: bool,
+    /// Voltage that has acted since the tick before \[V\], as the observer is told.
+    pub acting_voltage: f64,
+}
+
+/// An observer and a law, of a controller with `N` variables: what they remember from tick to tick.
+pub trait ObserverAndLaw<const N: usize>: Clone + Send + Serialize + DeserializeOwned + 'static {
+    const DESCRIPTION: &'static Description;
+    const ROWS: ControllerRows;
+
+    /// With parameters `values`, before the first tick.
+    fn new(values: &[f64; N]) -> Self;
+
+    /// Whether the parameters fit together.
+    fn check_parameters(values: &[f64; N]) -> Result<(), UnitError> {
+        let _ = values;
+        Ok(())
+    }
+
+    /// Takes over tunable parameters; what is remembered stays.
+    fn apply_tunable_parameters(&mut self, values: &[f64; N]);
+
+    /// Begins anew with these parameters and inputs, and sets all outputs.
+    fn initialise(&mut self, values: &mut [f64; N]);
+
+    /// Reads the inputs, runs the observer, then the law, and sets the outputs.
+    fn tick(&mut self, values: &mut [f64; N], sample: Sample, journal: &mut dyn Journal);
+
+    /// Whether this can have been made with these parameters.
+    fn is_consistent(&self, values: &[f64; N]) -> bool;
+
+    /// What a tick costs at most \[s\], see [`crate::unit::work`].
+    fn cost_of_tick(values: &[f64; N]) -> f64;
+}
