@@ -1,8 +1,8 @@
 //! What a unit tells the world about itself.
 
 #[cfg(feature = "tools")]
-use super::plant::ContinuousPlant;
-use super::plant::PlantEquations;
+use super::continuous_plant::ContinuousPlant;
+use super::continuous_plant::PlantEquations;
 use super::sampled::SAMPLE_TIME;
 #[cfg(feature = "tools")]
 use super::structure::Dependencies;

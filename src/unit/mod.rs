@@ -2,6 +2,7 @@
 //! Knows nothing of FMI.
 
 pub mod continuous;
+pub mod continuous_plant;
 pub mod description;
 pub mod edition;
 mod end_stop_events;
@@ -18,7 +19,7 @@ mod magnetic_bearing_controller;
 mod magnetic_bearing_plant;
 pub mod memory;
 pub mod persistence;
-pub mod plant;
+
 pub mod quantity;
 pub mod sample_clock;
 pub mod sampled;

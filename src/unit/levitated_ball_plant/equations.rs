@@ -5,10 +5,10 @@ use crate::plant::end_stops::{Contact, rate_in_contact, settled, transition};
 use crate::plant::levitated_ball::{Drive, DrivenBall, LevitatedBall, State};
 use crate::scalar::Scalar;
 use crate::unit::Description;
+use crate::unit::continuous_plant::{Motion, PlantEquations, SensorRows};
 use crate::unit::end_stop_events::indicators;
 #[cfg(feature = "tools")]
 use crate::unit::end_stop_events::{cause_of_contact, imposed};
-use crate::unit::plant::{Motion, PlantEquations, SensorRows};
 use crate::unit::work::Load;
 
 /// What a step of the integrator costs \[s\], see [`crate::unit::work`].

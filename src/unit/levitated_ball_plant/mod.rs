@@ -3,7 +3,7 @@
 mod equations;
 mod table;
 
-use super::plant::ContinuousPlant;
+use super::continuous_plant::ContinuousPlant;
 use equations::LevitatedBallEquations;
 pub use table::DESCRIPTION;
 

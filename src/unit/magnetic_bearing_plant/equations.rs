@@ -4,8 +4,8 @@ use super::table::*;
 use crate::plant::magnetic_bearing::{MagneticBearing, State};
 use crate::scalar::Scalar;
 use crate::unit::Description;
+use crate::unit::continuous_plant::{Motion, PlantEquations, ProcessNoise, SensorRows};
 use crate::unit::magnetic_bearing::map;
-use crate::unit::plant::{Motion, PlantEquations, ProcessNoise, SensorRows};
 use crate::unit::quantity::MAGNETIC_FLUX;
 use serde::{Deserialize, Serialize};
 
