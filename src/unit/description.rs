@@ -1,11 +1,6 @@
 //! What a unit tells the world about itself.
 
-#[cfg(feature = "tools")]
-use super::continuous_plant::ContinuousPlant;
-use super::continuous_plant::PlantEquations;
 use super::sampled::SAMPLE_TIME;
-#[cfg(feature = "tools")]
-use super::structure::Dependencies;
 use super::variable::Variable;
 use super::{Edition, Token};
 
@@ -24,9 +19,6 @@ pub struct Description {
     pub stop_time: f64,
     /// By [`Edition`], in the order of [`Edition::ALL`].
     pub(super) tokens: [Token; Edition::ALL.len()],
-    /// Finds what each row of a plant's table follows from.
-    #[cfg(feature = "tools")]
-    pub(super) trace: Option<fn() -> Vec<Dependencies>>,
 }
 
 impl Description {
@@ -37,17 +29,7 @@ impl Description {
             Token::of(name, variables, Edition::Plain.clock_table(is_sampled)),
             Token::of(name, variables, Edition::Clocked.clock_table(is_sampled)),
         ];
-        Self {
-            name,
-            summary: "",
-            documentation: &[],
-            variables,
-            step_size: 0.0,
-            stop_time: 0.0,
-            tokens,
-            #[cfg(feature = "tools")]
-            trace: None,
-        }
+        Self { name, summary: "", documentation: &[], variables, step_size: 0.0, stop_time: 0.0, tokens }
     }
 
     pub(super) const fn summary(mut self, summary: &'static str) -> Self {
@@ -65,18 +47,6 @@ impl Description {
         self.step_size = step_size;
         self.stop_time = stop_time;
         self
-    }
-
-    /// The unit is a plant with these equations, in which its dependencies are found.
-    pub(super) const fn equations<E, const N: usize, const X: usize, const U: usize>(self) -> Self
-    where
-        E: PlantEquations<N, X, U>,
-    {
-        Self {
-            #[cfg(feature = "tools")]
-            trace: Some(ContinuousPlant::<E, N, X, U>::dependencies),
-            ..self
-        }
     }
 
     /// The variable called `name` and its value reference.

@@ -190,27 +190,29 @@ impl UnitType {
     }
 }
 
-pub static MAGNETIC_BEARING_PLANT: UnitType =
-    UnitType::of::<MagneticBearingPlant>(&magnetic_bearing_plant::DESCRIPTION);
-pub static MAGNETIC_BEARING_CONTROLLER: UnitType =
-    UnitType::of::<MagneticBearingController>(&magnetic_bearing_controller::DESCRIPTION);
-pub static LEVITATED_BALL_PLANT: UnitType =
-    UnitType::of::<LevitatedBallPlant>(&levitated_ball_plant::DESCRIPTION);
-pub static LEVITATED_BALL_CONTROLLER: UnitType =
-    UnitType::of::<LevitatedBallController>(&levitated_ball_controller::DESCRIPTION);
-pub static MAGLEV_RIG_PLANT: UnitType = UnitType::of::<MaglevRigPlant>(&maglev_rig_plant::DESCRIPTION);
-pub static MAGLEV_RIG_CONTROLLER: UnitType =
-    UnitType::of::<MaglevRigController>(&maglev_rig_controller::DESCRIPTION);
+/// The list of all units.
+macro_rules! units {
+    ($($unit:ident: $model:ty = $module:ident;)*) => {
+        $(pub static $unit: UnitType = UnitType::of::<$model>(&$module::DESCRIPTION);)*
 
-/// All units the shared library offers.
-pub static UNITS: &[&UnitType] = &[
-    &MAGNETIC_BEARING_PLANT,
-    &MAGNETIC_BEARING_CONTROLLER,
-    &LEVITATED_BALL_PLANT,
-    &LEVITATED_BALL_CONTROLLER,
-    &MAGLEV_RIG_PLANT,
-    &MAGLEV_RIG_CONTROLLER,
-];
+        /// All units the shared library offers.
+        pub static UNITS: &[&UnitType] = &[$(&$unit),*];
+
+        /// How to find their dependencies: apart from the units, so that a shared library can do without.
+        #[cfg(feature = "tools")]
+        static DEPENDENCIES: &[(&UnitType, fn() -> Vec<structure::Dependencies>)] =
+            &[$((&$unit, <$model as structure::Structured>::dependencies)),*];
+    };
+}
+
+units! {
+    MAGNETIC_BEARING_PLANT: MagneticBearingPlant = magnetic_bearing_plant;
+    MAGNETIC_BEARING_CONTROLLER: MagneticBearingController = magnetic_bearing_controller;
+    LEVITATED_BALL_PLANT: LevitatedBallPlant = levitated_ball_plant;
+    LEVITATED_BALL_CONTROLLER: LevitatedBallController = levitated_ball_controller;
+    MAGLEV_RIG_PLANT: MaglevRigPlant = maglev_rig_plant;
+    MAGLEV_RIG_CONTROLLER: MaglevRigController = maglev_rig_controller;
+}
 
 /// Every unit in every edition that suits it.
 pub fn editions() -> impl Iterator<Item = (&'static UnitType, Edition)> {

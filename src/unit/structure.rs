@@ -1,6 +1,8 @@
 //! Which variables the value of another one follows from: what model descriptions call dependencies.
 
-use super::Description;
+use super::sampled_controller::{ObserverAndLaw, SampledController};
+use super::variable::Variable;
+use super::{DEPENDENCIES, Description};
 
 /// How a known enters the equation of an unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -24,20 +26,29 @@ pub struct Dependencies {
     pub initially: Vec<usize>,
 }
 
-impl Description {
-    /// Dependencies per row of the table: of a plant those of its equations, computed anew at each call, of a sampled
-    /// unit, whose outputs are held between ticks, those that the table tells.
-    pub fn dependencies(&self) -> Vec<Dependencies> {
-        match self.trace {
-            Some(trace) => trace(),
-            None => self.variables.iter().map(|row| self.declared(row.initially_from)).collect(),
-        }
-    }
+/// A unit whose dependencies can be found without an instance.
+pub trait Structured {
+    /// What each row of the table follows from.
+    fn dependencies() -> Vec<Dependencies>;
+}
 
-    fn declared(&self, initially_from: &[&str]) -> Dependencies {
-        let sources = initially_from.iter().filter_map(|name| self.find(name));
-        let mut initially: Vec<usize> = sources.map(|(reference, _)| reference).collect();
-        initially.sort_unstable();
-        Dependencies { at_an_instant: Vec::new(), initially }
+/// The outputs of a controller are held between ticks: at one instant they follow from nothing.
+impl<C: ObserverAndLaw<N>, const N: usize> Structured for SampledController<C, N> {
+    fn dependencies() -> Vec<Dependencies> {
+        let declared = |row: &Variable| {
+            let sources = row.initially_from.iter().filter_map(|name| C::DESCRIPTION.find(name));
+            let mut initially: Vec<usize> = sources.map(|(reference, _)| reference).collect();
+            initially.sort_unstable();
+            Dependencies { at_an_instant: Vec::new(), initially }
+        };
+        C::DESCRIPTION.variables.iter().map(declared).collect()
+    }
+}
+
+impl Description {
+    /// Dependencies per row of the table, found anew at each call; none if this is no unit of this library.
+    pub fn dependencies(&self) -> Vec<Dependencies> {
+        let own = DEPENDENCIES.iter().find(|(unit, _)| core::ptr::eq(unit.description, self));
+        own.map(|(_, find)| find()).unwrap_or_else(|| vec![Dependencies::default(); self.variables.len()])
     }
 }

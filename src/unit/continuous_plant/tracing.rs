@@ -7,22 +7,23 @@ use super::shell::follow;
 use super::{ContinuousPlant, PlantEquations};
 use crate::scalar::{Traced, Variation};
 use crate::unit::Solver;
-use crate::unit::structure::{Dependencies, DependencyKind};
+use crate::unit::structure::{Dependencies, DependencyKind, Structured};
 use crate::unit::variable::{Causality, Kind, Variability, Variable};
 
 /// Who solves the plant, and whether its sensor is read: all that an instance may be.
 const CONFIGURATIONS: [(Solver, bool); 3] =
     [(Solver::Unit, true), (Solver::Importer, true), (Solver::Importer, false)];
 
-impl<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U: usize> ContinuousPlant<E, N, X, U> {
-    /// What each row of the table follows from.
-    pub fn dependencies() -> Vec<Dependencies> {
-        let instant = Self::at_an_instant();
-        let initial = Self::initially();
-        let rows = instant.into_iter().zip(initial);
+impl<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U: usize> Structured
+    for ContinuousPlant<E, N, X, U>
+{
+    fn dependencies() -> Vec<Dependencies> {
+        let rows = Self::at_an_instant().into_iter().zip(Self::initially());
         rows.map(|(at_an_instant, initially)| Dependencies { at_an_instant, initially }).collect()
     }
+}
 
+impl<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U: usize> ContinuousPlant<E, N, X, U> {
     fn at_an_instant() -> Vec<Vec<(usize, DependencyKind)>> {
         let mut runs = Vec::new();
         for (solver, is_read) in CONFIGURATIONS {

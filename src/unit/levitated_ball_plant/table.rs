@@ -1,6 +1,5 @@
 //! Variables and description of the levitated ball.
 
-use super::equations::LevitatedBallEquations;
 use crate::unit::Description;
 use crate::unit::levitated_ball::{
     ACCELERATION, CURRENT, FLUX, FORCE, LABORATORY_FLUX, POSITION, VELOCITY, VOLTAGE, gap, gravity,
@@ -96,5 +95,4 @@ pub static DESCRIPTION: Description = Description::new("LevitatedBallPlant", &VA
          FMI 2.0).",
         "Not in the paper: the disturbing force, the stops and the sensor model.",
     ])
-    .experiment(1e-4, 5.0)
-    .equations::<LevitatedBallEquations, COUNT, 3, 2>();
+    .experiment(1e-4, 5.0);

@@ -1,6 +1,5 @@
 //! Variables and description of the maglev rig.
 
-use super::equations::MaglevRigEquations;
 use crate::plant::maglev_rig::MaglevRig;
 use crate::unit::Description;
 use crate::unit::maglev_rig::{
@@ -123,5 +122,4 @@ pub static DESCRIPTION: Description = Description::new("MaglevRigPlant", &VARIAB
          range, operating point 9 mm, limits of the voltage (their negative half is left out: the force goes with the \
          square, so that negative voltages attract, too). Assumed: the stops. Not modelled: the driver's current loop.",
     ])
-    .experiment(1e-3, 10.0)
-    .equations::<MaglevRigEquations, COUNT, 2, 2>();
+    .experiment(1e-3, 10.0);

@@ -1,6 +1,5 @@
 //! Variables and description of the magnetic bearing.
 
-use super::equations::MagneticBearingEquations;
 use crate::unit::Description;
 use crate::unit::magnetic_bearing::{EXACT, MAP, bias_flux, saturation_flux};
 use crate::unit::quantity::{ACCELERATION, LENGTH, MAGNETIC_FLUX, RATIO, VELOCITY, VOLTAGE};
@@ -82,5 +81,4 @@ pub static DESCRIPTION: Description = Description::new("MagneticBearingPlant", &
          slope (input derivative of order 1, FMI 2.0); the step is then solved exactly, too, whatever map is.",
         "Not in the paper: the sensor model and the process noise, which are off at the start values.",
     ])
-    .experiment(1e-3, 10.0)
-    .equations::<MagneticBearingEquations, COUNT, 3, 1>();
+    .experiment(1e-3, 10.0);
