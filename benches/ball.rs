@@ -2,13 +2,11 @@
 //!
 //! The currents are those of a loop on the sinusoids, whose reference the controller gets, too.
 
-#[path = "measure/component.rs"]
-mod component;
 mod measure;
 
-use component::{Component, reference};
 use maglev_fmu::signal::BallReference;
 use maglev_fmu::unit::{LevitatedBallController, LevitatedBallPlant, Silence, Unit};
+use maglev_fmu_test::component::{Component, reference};
 use measure::{Candidate, medians, verdict};
 
 const T: f64 = 1e-4;

@@ -2,18 +2,16 @@
 //! outputs, on the signals of a PID loop with a millivolt of noise and a moving reference. Beside it the observers
 //! alone, which is what a tuning loop pays per sample.
 
-#[path = "measure/component.rs"]
-mod component;
 mod measure;
 
 use std::hint::black_box;
 
-use component::{Component, reference};
 use maglev_fmu::observer::extended_state::{
     ExtendedState, ExtendedStateModel, Injection, LinearInjection, NonlinearInjection, gains_from_bandwidth,
 };
 use maglev_fmu::observer::extended_state_exact::ExactPredictor;
 use maglev_fmu::unit::{MaglevRigController, MaglevRigPlant, Silence, Unit};
+use maglev_fmu_test::component::{Component, reference};
 use measure::{Candidate, medians, verdict};
 
 const T: f64 = 1e-3;

@@ -7,13 +7,8 @@
 //! The positions are those of a noise-free loop, and for the observers that are made for noise, and once for the
 //! Newton observer, the same with 1e-7 m of noise, which the Newton observers have to iterate for.
 
-#[path = "measure/component.rs"]
-mod component;
-#[path = "../tests/literal/mod.rs"]
-mod literal;
 mod measure;
 
-use component::{Component, reference};
 use maglev_fmu::controller::bearing_feedback::{self, Gains, Law};
 use maglev_fmu::plant::magnetic_bearing::State;
 use maglev_fmu::signal::GaussianNoise;
@@ -21,6 +16,8 @@ use maglev_fmu::unit::sample_clock::SampleClock;
 use maglev_fmu::unit::{
     Description, Journal, MagneticBearingController, MagneticBearingPlant, Silence, Unit, UnitError,
 };
+use maglev_fmu_test::component::{Component, reference};
+use maglev_fmu_test::printed_newton;
 use measure::{Candidate, medians, verdict};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -100,11 +97,11 @@ impl Baseline {
         self.outputs = [self.outputs[1], self.outputs[2], values[position]];
         self.voltages = [self.voltages[1], values[voltage]];
         if let Some(w) =
-            literal::invert(self.outputs, self.voltages, self.guess, self.iterations, 1.0, 0.0, T)
+            printed_newton::invert(self.outputs, self.voltages, self.guess, self.iterations, 1.0, 0.0, T)
         {
-            self.guess = literal::printed_map(w, self.voltages[0], 0.0, T);
+            self.guess = printed_newton::printed_map(w, self.voltages[0], 0.0, T);
         }
-        let estimate = literal::printed_map(self.guess, self.voltages[1], 0.0, T);
+        let estimate = printed_newton::printed_map(self.guess, self.voltages[1], 0.0, T);
         let state = State { position: estimate[0], velocity: estimate[1], flux: estimate[2] };
         let gains = Gains { position: 0.92, velocity: 9.94 };
         values[voltage] = bearing_feedback::voltage(Law::A, gains, state).clamp(-150.0, 150.0);

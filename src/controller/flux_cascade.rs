@@ -52,7 +52,7 @@ impl FluxCascade {
 
 #[cfg(test)]
 mod tests {
-    //! Closed loops are in `tests/flux_cascade.rs`.
+    //! Closed loops are in `tests/core/bearing/flux_cascade.rs`.
 
     use super::*;
     use proptest::prelude::*;

@@ -202,7 +202,7 @@ impl<I: Injection> ExtendedStateModel<I> {
 
 #[cfg(test)]
 mod tests {
-    //! Closed forms, noise gains and the paper's table are in `tests/rig_observers.rs`.
+    //! Closed forms, noise gains and the paper's table are in `tests/core/rig/observers.rs`.
 
     use super::*;
 

@@ -1,7 +1,7 @@
 //! The C boundary from outside: the exported functions of both standards, called as an importer calls them.
 
-mod harness;
-
+mod allocations;
+mod allocator;
 mod allowed_calls_fmi2;
 mod allowed_calls_fmi3;
 #[cfg(feature = "tools")]
@@ -15,6 +15,7 @@ mod failing_memory;
 mod fitting_parameters;
 #[cfg(target_arch = "x86_64")]
 mod floating_point;
+mod harness;
 mod instantiation;
 mod intermediate_update;
 mod life_cycle;

@@ -1,5 +1,4 @@
 //! The exported functions called as a C importer does, both standards behind one interface.
-#![allow(dead_code, reason = "each test binary uses a part")]
 
 mod access;
 pub mod clocked;
@@ -18,11 +17,9 @@ use maglev_fmu::fmi::fmi3::*;
 use maglev_fmu::unit::variable::Causality;
 use maglev_fmu::unit::{Description, Edition, UNITS};
 
-#[allow(unused_imports, reason = "each test binary uses a part")]
 pub use exchange::plants;
 pub use instantiate::{instantiate, instantiate_with};
 pub use recorder::{Message, Recorder, fmi2_logger, fmi3_logger};
-#[allow(unused_imports, reason = "each test binary uses a part")]
 pub use state::State;
 
 pub const PLANT: &str = "MagneticBearingPlant";

@@ -2,7 +2,7 @@
 
 use core::cell::Cell;
 
-use super::super::failing_memory::{blocks, has_failed, limit};
+use crate::allocator::{blocks, has_failed, limit};
 
 thread_local! {
     /// Blocks of memory that the library holds.

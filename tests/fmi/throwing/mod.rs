@@ -11,7 +11,7 @@ use importer::{Importer, Language};
 use maglev_fmu::fmi::fmi3::{fmi3InstantiateCoSimulation, fmi3InstantiateScheduledExecution};
 use maglev_fmu::unit::Edition;
 
-use super::failing_memory::allocator::blocks;
+use super::allocator::blocks;
 use super::harness::{self, BOTH, CONTROLLER, Component, ERROR, OK, Standard, description, instantiate_with};
 
 /// Runs `check` with an importer in every language for which there is a compiler.

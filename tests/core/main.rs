@@ -1,0 +1,8 @@
+//! Plants, observers, control laws and the units made of them, natively: no FMI.
+
+mod allocations;
+mod ball;
+mod bearing;
+mod limits;
+mod packaged_loops;
+mod rig;

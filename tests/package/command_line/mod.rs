@@ -1,0 +1,6 @@
+//! The program `maglev-fmu`.
+
+#[cfg(unix)]
+mod output;
+mod packaging;
+mod parameters;

@@ -1,0 +1,15 @@
+//! Packages and the commands that write them: descriptions, archives, systems, and what is refused.
+
+mod archive;
+mod built_packages;
+mod command_line;
+mod descriptions;
+mod library;
+mod library_file;
+mod model_description;
+mod related_files;
+mod start_values;
+mod system_units;
+mod systems;
+mod third_party;
+mod xml;

@@ -1,0 +1,538 @@
+//! Rules of the standards that a schema does not check, on the XML of every unit.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use maglev_fmu::package::{Capabilities, FmiVersion, Form, GenerationTime, model_description};
+use maglev_fmu::unit::structure::DependencyKind;
+use maglev_fmu::unit::variable::{Causality, Kind};
+use maglev_fmu::unit::{Description, Edition, StartValues, UNITS};
+
+use super::xml::Element;
+
+/// A variable of either standard.
+struct Variable<'a> {
+    name: &'a str,
+    /// Element with causality, variability, initial.
+    head: &'a Element,
+    /// Element with type, start, min, max; the same as `head` in FMI 3.0.
+    value: &'a Element,
+}
+
+impl Variable<'_> {
+    fn number(&self, attribute: &str) -> Option<f64> {
+        self.value.attribute(attribute).map(|text| text.parse().unwrap())
+    }
+}
+
+fn variables(root: &Element) -> Vec<Variable<'_>> {
+    // Clocks have a test of their own.
+    let elements = root.child("ModelVariables").children.iter().filter(|element| element.name != "Clock");
+    elements
+        .map(|head| {
+            let value = if head.name == "ScalarVariable" { &head.children[0] } else { head };
+            Variable { name: head.attribute("name").unwrap(), head, value }
+        })
+        .collect()
+}
+
+/// Name to element of all type definitions; in FMI 2.0 the element inside `SimpleType`.
+fn types(root: &Element) -> BTreeMap<&str, &Element> {
+    let definitions = &root.child("TypeDefinitions").children;
+    let types: BTreeMap<&str, &Element> = definitions
+        .iter()
+        .map(|element| {
+            let definition = if element.name == "SimpleType" { &element.children[0] } else { element };
+            (element.attribute("name").unwrap(), definition)
+        })
+        .collect();
+    assert_eq!(types.len(), definitions.len(), "two types of one name");
+    types
+}
+
+/// Unit name to display unit names.
+fn units(root: &Element) -> BTreeMap<&str, Vec<&str>> {
+    let definitions = &root.child("UnitDefinitions").children;
+    assert!(definitions.iter().all(|element| element.children_named("BaseUnit").count() == 1));
+    let units: BTreeMap<&str, Vec<&str>> = definitions
+        .iter()
+        .map(|element| {
+            let names = element.children_named("DisplayUnit").map(|unit| unit.attribute("name").unwrap());
+            (element.attribute("name").unwrap(), names.collect())
+        })
+        .collect();
+    assert_eq!(units.len(), definitions.len(), "two units of one name");
+    units
+}
+
+fn check_all(check: impl Fn(&'static Description, Form, &Element)) {
+    for unit in UNITS {
+        for form in Form::all_of(unit.description) {
+            let text = model_description(unit.description, StartValues::TABLE, form, None);
+            check(unit.description, form, &Element::parse(&text));
+        }
+    }
+}
+
+#[test]
+fn heads_name_the_unit_and_its_token() {
+    check_all(|description, form, root| {
+        let (fmi_version, token) = match form.version {
+            FmiVersion::Two => ("2.0", "guid"),
+            FmiVersion::Three => ("3.0", "instantiationToken"),
+        };
+        assert_eq!(root.name, "fmiModelDescription");
+        for (attribute, value) in [
+            ("fmiVersion", fmi_version),
+            ("modelName", description.name),
+            (token, form.edition.token(description).as_str()),
+            ("version", env!("CARGO_PKG_VERSION")),
+            ("license", "MIT"),
+            ("variableNamingConvention", "structured"),
+        ] {
+            assert_eq!(root.attribute(attribute), Some(value), "{attribute}");
+        }
+        assert_eq!(root.attribute("generationDateAndTime"), None);
+        let identifier = root.child("CoSimulation").attribute("modelIdentifier").unwrap();
+        assert_eq!(identifier, description.name);
+        assert!(identifier.starts_with(|first: char| first.is_ascii_alphabetic()));
+        assert!(identifier.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_'));
+    });
+}
+
+#[test]
+fn packages_carry_their_time() {
+    let time = Some(GenerationTime::from_epoch_seconds(1_234_567_890));
+    for form in Form::all_of(UNITS[0].description) {
+        let root = Element::parse(&model_description(UNITS[0].description, StartValues::TABLE, form, time));
+        assert_eq!(root.attribute("generationDateAndTime"), Some("2009-02-13T23:31:30Z"));
+    }
+}
+
+#[test]
+fn flags_are_those_of_the_library() {
+    check_all(|description, form, root| {
+        let can = Capabilities::of(description, form.edition);
+        let flags = root.child("CoSimulation");
+        let mut expected = vec![
+            ("needsExecutionTool", can.needs_execution_tool),
+            ("canHandleVariableCommunicationStepSize", can.can_handle_variable_communication_step_size),
+            ("canBeInstantiatedOnlyOncePerProcess", can.can_be_instantiated_only_once_per_process),
+        ];
+        expected.extend(match form.version {
+            FmiVersion::Two => vec![
+                ("canInterpolateInputs", can.can_interpolate_inputs),
+                ("canRunAsynchronuously", can.can_run_asynchronously),
+                ("canNotUseMemoryManagementFunctions", can.can_not_use_memory_management_functions),
+                ("canGetAndSetFMUstate", can.can_get_and_set_fmu_state),
+                ("canSerializeFMUstate", can.can_serialize_fmu_state),
+                ("providesDirectionalDerivative", can.provides_directional_derivatives),
+            ],
+            FmiVersion::Three => vec![
+                ("canGetAndSetFMUState", can.can_get_and_set_fmu_state),
+                ("canSerializeFMUState", can.can_serialize_fmu_state),
+                ("providesDirectionalDerivatives", can.provides_directional_derivatives),
+                ("providesAdjointDerivatives", can.provides_adjoint_derivatives),
+                ("providesPerElementDependencies", can.provides_per_element_dependencies),
+                ("providesIntermediateUpdate", can.provides_intermediate_update),
+                ("mightReturnEarlyFromDoStep", can.might_return_early_from_do_step),
+                ("canReturnEarlyAfterIntermediateUpdate", can.can_return_early_after_intermediate_update),
+                ("hasEventMode", can.has_event_mode),
+                ("providesEvaluateDiscreteStates", can.provides_evaluate_discrete_states),
+            ],
+        });
+        for (flag, value) in &expected {
+            assert_eq!(flags.attribute(flag), Some(value.to_string().as_str()), "{flag}");
+        }
+        let order = can.max_output_derivative_order.to_string();
+        assert_eq!(flags.attribute("maxOutputDerivativeOrder"), Some(order.as_str()));
+        // Nothing but those, the order and the identifier.
+        assert_eq!(flags.attributes.len(), expected.len() + 2);
+    });
+}
+
+#[test]
+fn flags_of_model_exchange_are_those_of_the_library() {
+    check_all(|description, form, root| {
+        let can = Capabilities::of(description, form.edition);
+        let elements: Vec<&Element> = root.children_named("ModelExchange").collect();
+        assert_eq!(elements.len(), usize::from(description.offers_model_exchange()), "{}", description.name);
+        let Some(flags) = elements.first() else { return };
+        assert_eq!(flags.attribute("modelIdentifier"), Some(description.name));
+        let mut expected = vec![
+            ("needsExecutionTool", can.needs_execution_tool),
+            ("canBeInstantiatedOnlyOncePerProcess", can.can_be_instantiated_only_once_per_process),
+        ];
+        expected.extend(match form.version {
+            FmiVersion::Two => vec![
+                ("completedIntegratorStepNotNeeded", !can.needs_completed_integrator_step),
+                ("canNotUseMemoryManagementFunctions", can.can_not_use_memory_management_functions),
+                ("canGetAndSetFMUstate", can.can_get_and_set_fmu_state),
+                ("canSerializeFMUstate", can.can_serialize_fmu_state),
+                ("providesDirectionalDerivative", can.provides_directional_derivatives),
+            ],
+            FmiVersion::Three => vec![
+                ("needsCompletedIntegratorStep", can.needs_completed_integrator_step),
+                ("canGetAndSetFMUState", can.can_get_and_set_fmu_state),
+                ("canSerializeFMUState", can.can_serialize_fmu_state),
+                ("providesDirectionalDerivatives", can.provides_directional_derivatives),
+                ("providesAdjointDerivatives", can.provides_adjoint_derivatives),
+                ("providesPerElementDependencies", can.provides_per_element_dependencies),
+                ("providesEvaluateDiscreteStates", can.provides_evaluate_discrete_states),
+            ],
+        });
+        for (flag, value) in &expected {
+            assert_eq!(flags.attribute(flag), Some(value.to_string().as_str()), "{flag}");
+        }
+        assert_eq!(flags.attributes.len(), expected.len() + 1);
+    });
+}
+
+#[test]
+fn states_are_referred_to_by_their_derivatives() {
+    check_all(|description, form, root| {
+        let offset = if form.version == FmiVersion::Two { 1 } else { 0 };
+        let variables = variables(root);
+        for (variable, row) in variables.iter().zip(description.variables) {
+            let state =
+                variable.value.attribute("derivative").map(|text| text.parse::<usize>().unwrap() - offset);
+            assert_eq!(state.map(|state| variables[state].name), row.derivative_of, "{}", row.name);
+            let reinit = variable.value.attribute("reinit");
+            assert_eq!(reinit, row.is_reinitialised.then_some("true"), "{}", row.name);
+        }
+        let count = description.event_indicators().count().to_string();
+        let expected =
+            (form.version == FmiVersion::Two && description.offers_model_exchange()).then_some(count);
+        assert_eq!(root.attribute("numberOfEventIndicators"), expected.as_deref());
+    });
+}
+
+#[test]
+fn variables_are_the_rows_of_the_table() {
+    check_all(|description, form, root| {
+        let variables = variables(root);
+        assert_eq!(variables.len(), description.variables.len());
+        for (reference, (variable, row)) in variables.iter().zip(description.variables).enumerate() {
+            assert_eq!(variable.name, row.name);
+            assert_eq!(variable.head.attribute("valueReference"), Some(reference.to_string().as_str()));
+            let kind = match (form.version, row.kind) {
+                (FmiVersion::Two, Kind::Real(_)) => "Real",
+                (FmiVersion::Three, Kind::Real(_)) => "Float64",
+                (FmiVersion::Two, Kind::Integer) => "Integer",
+                (FmiVersion::Three, Kind::Integer) => "Int32",
+                (_, Kind::Boolean) => "Boolean",
+                (_, Kind::Enumeration(_)) => "Enumeration",
+            };
+            assert_eq!(variable.value.name, kind, "{}", row.name);
+        }
+    });
+}
+
+#[test]
+fn clocked_editions_have_two_clocks_and_may_be_scheduled_and_plain_ones_have_neither() {
+    check_all(|description, form, root| {
+        let elements = root.child("ModelVariables").children.iter();
+        let clocks: Vec<_> = elements.filter(|element| element.name == "Clock").collect();
+        let scheduled = root.children_named("ScheduledExecution").count();
+        let has_events = root.child("CoSimulation").attribute("hasEventMode");
+        let intermediate = variables(root)
+            .iter()
+            .filter(|variable| variable.head.attribute("intermediateUpdate") == Some("true"))
+            .map(|variable| (variable.head.attribute("causality"), variable.head.attribute("variability")))
+            .collect::<BTreeSet<_>>();
+        // Within a step only continuous inputs may be set, and nothing that is discrete may be asked for.
+        let calls_back = form.version == FmiVersion::Three && description.is_sampled();
+        let expected = calls_back.then_some((Some("input"), Some("continuous")));
+        assert_eq!(intermediate, expected.into_iter().collect());
+        let structure = &root.child("ModelStructure").children;
+        let rows = structure.iter().filter_map(|row| row.attribute("valueReference")?.parse::<usize>().ok());
+        let of_clocks = rows.filter(|reference| *reference >= description.variables.len()).count();
+        if form.edition == Edition::Plain {
+            // Many importers misread clocks and what goes with them.
+            assert_eq!((clocks.len(), scheduled, of_clocks), (0, 0, 0));
+            assert!(matches!(has_events, None | Some("false")));
+            return;
+        }
+        assert_eq!((scheduled, has_events), (1, Some("true")));
+        let identifier = root.child("ScheduledExecution").attribute("modelIdentifier");
+        assert_eq!(identifier, Some(description.name));
+        let expected = [
+            [Some("tick"), Some("input"), Some("fixed"), Some("0"), Some("true")],
+            [Some("ticked"), Some("output"), Some("triggered"), None, None],
+        ];
+        assert_eq!(clocks.len(), expected.len());
+        for (index, (clock, expected)) in clocks.iter().zip(expected).enumerate() {
+            let names = ["name", "causality", "intervalVariability", "priority", "supportsFraction"];
+            assert_eq!(names.map(|name| clock.attribute(name)), expected);
+            let reference = (description.variables.len() + index).to_string();
+            assert_eq!(clock.attribute("valueReference"), Some(reference.as_str()));
+            assert_eq!(clock.attribute("variability"), Some("discrete"));
+            // "This attribute is required if Clock type is constant, fixed or tunable", section 2.4.5.1.
+            let interval =
+                clock.attribute("intervalDecimal").map(|interval| interval.parse::<f64>().unwrap());
+            let (_, sample_time) = description.find("sample_time").unwrap();
+            assert_eq!(interval, (index == 0).then_some(sample_time.start));
+        }
+        // Outputs can be read outside of ticks, `ticked` at ticks only.
+        assert!(variables(root).iter().all(|variable| variable.head.attribute("clocks").is_none()));
+        let [tick, ticked] = [clocks[0], clocks[1]];
+        let bound_to = [tick, ticked].map(|clock| clock.attribute("clocks"));
+        assert_eq!(bound_to, [None, tick.attribute("valueReference")]);
+        // It is listed as an output and, being bound to a clock, not among the initial unknowns.
+        assert_eq!(of_clocks, 1);
+        let output = root.child("ModelStructure").children_named("Output").last().unwrap();
+        assert_eq!(output.attribute("valueReference"), clocks[1].attribute("valueReference"));
+        assert_eq!(output.attribute("dependencies"), clocks[0].attribute("valueReference"));
+    });
+}
+
+#[test]
+fn start_and_initial_follow_from_the_causality() {
+    check_all(|_, _, root| {
+        let mut independent = 0;
+        for variable in variables(root) {
+            let [causality, variability] =
+                ["causality", "variability"].map(|name| variable.head.attribute(name).unwrap());
+            let (initial, has_start) = match causality {
+                "parameter" => (Some("exact"), true),
+                "input" => (None, true),
+                "calculatedParameter" | "output" | "local" => (Some("calculated"), false),
+                "independent" => (None, false),
+                other => panic!("{} is {other}", variable.name),
+            };
+            assert_eq!(variable.head.attribute("initial"), initial, "{}", variable.name);
+            assert_eq!(variable.value.attribute("start").is_some(), has_start, "{}", variable.name);
+            let allowed: &[&str] = match causality {
+                "parameter" | "calculatedParameter" => &["fixed", "tunable"],
+                "independent" => &["continuous"],
+                _ => &["discrete", "continuous"],
+            };
+            assert!(allowed.contains(&variability), "{}: {variability}", variable.name);
+            let is_real = ["Real", "Float64"].contains(&variable.value.name.as_str());
+            assert!(is_real || variability != "continuous", "{} is no real number", variable.name);
+            independent += usize::from(causality == "independent");
+        }
+        assert_eq!(independent, 1);
+    });
+}
+
+#[test]
+fn starts_lie_between_minimum_and_maximum() {
+    check_all(|_, _, root| {
+        let types = types(root);
+        for variable in variables(root) {
+            let name = variable.name;
+            if variable.value.name == "Boolean" {
+                assert!(matches!(variable.value.attribute("start"), None | Some("true" | "false")));
+                continue;
+            }
+            let [minimum, start, maximum] = ["min", "start", "max"].map(|name| variable.number(name));
+            for number in [minimum, start, maximum].into_iter().flatten() {
+                assert!(number.is_finite(), "{name}");
+            }
+            let (minimum, maximum) = (minimum.unwrap_or(f64::MIN), maximum.unwrap_or(f64::MAX));
+            assert!(minimum <= maximum, "{name}");
+            let Some(start) = start else { continue };
+            assert!((minimum..=maximum).contains(&start), "{name} = {start}");
+            if variable.value.name == "Enumeration" {
+                let items = &types[variable.value.attribute("declaredType").unwrap()].children;
+                let number = start.to_string();
+                assert!(
+                    items.iter().any(|item| item.attribute("value") == Some(&number)),
+                    "{name} = {start}"
+                );
+            }
+        }
+    });
+}
+
+#[test]
+fn numbers_keep_all_their_digits() {
+    check_all(|description, _, root| {
+        for (variable, row) in variables(root).iter().zip(description.variables) {
+            if matches!(row.kind, Kind::Real(_)) && !row.is_calculated() {
+                assert_eq!(variable.number("start"), Some(row.start), "{}", row.name);
+            }
+        }
+    });
+}
+
+#[test]
+fn types_and_units_are_defined_and_used() {
+    check_all(|_, form, root| {
+        let (types, units) = (types(root), units(root));
+        let mut used = BTreeSet::new();
+        for variable in variables(root) {
+            assert!(!types.contains_key(variable.name), "{} is also a type", variable.name);
+            let declared = variable.value.attribute("declaredType");
+            match variable.value.name.as_str() {
+                "Real" | "Float64" => {
+                    let definition = types[declared.expect(variable.name)];
+                    let unit = definition.attribute("unit").unwrap();
+                    match form.version {
+                        FmiVersion::Two => assert_eq!(variable.value.attribute("unit"), Some(unit)),
+                        FmiVersion::Three => {
+                            for attribute in ["unit", "displayUnit", "nominal", "quantity"] {
+                                assert_eq!(variable.value.attribute(attribute), None, "{}", variable.name);
+                            }
+                        }
+                    }
+                    let display = definition.attribute("displayUnit");
+                    assert!(display.is_none_or(|name| units[unit].contains(&name)), "{display:?}");
+                    let nominal: f64 = definition.attribute("nominal").unwrap().parse().unwrap();
+                    assert!(nominal > 0.0);
+                }
+                "Enumeration" => {
+                    let items = &types[declared.expect(variable.name)].children;
+                    for attribute in ["name", "value"] {
+                        let distinct: BTreeSet<_> =
+                            items.iter().map(|item| item.attribute(attribute).unwrap()).collect();
+                        assert_eq!(distinct.len(), items.len(), "{declared:?}");
+                    }
+                }
+                _ => assert_eq!(declared, None),
+            }
+            used.extend(declared);
+        }
+        assert_eq!(used, types.keys().copied().collect());
+        if form.version == FmiVersion::Three {
+            // FMPy before 0.3.24 refuses types with any other attribute, a description for one.
+            let read = ["name", "quantity", "unit", "displayUnit", "min", "max", "nominal"];
+            for definition in types.values() {
+                let unread = definition.attributes.iter().find(|(name, _)| !read.contains(&name.as_str()));
+                assert_eq!(unread, None, "{definition:?}");
+            }
+        }
+        let of_types: BTreeSet<_> = types.values().filter_map(|element| element.attribute("unit")).collect();
+        assert_eq!(of_types, units.keys().copied().collect());
+    });
+}
+
+#[test]
+fn structure_lists_outputs_and_initial_unknowns_exactly() {
+    check_all(|description, form, root| {
+        let structure = root.child("ModelStructure");
+        let (mut outputs, mut unknowns, key, offset): (Vec<&Element>, Vec<&Element>, _, _) =
+            match form.version {
+                FmiVersion::Two => (
+                    structure.child("Outputs").children.iter().collect(),
+                    structure.child("InitialUnknowns").children.iter().collect(),
+                    "index",
+                    1,
+                ),
+                FmiVersion::Three => (
+                    structure.children_named("Output").collect(),
+                    structure.children_named("InitialUnknown").collect(),
+                    "valueReference",
+                    0,
+                ),
+            };
+        let row = |text: &str| text.parse::<usize>().unwrap() - offset;
+        // The clock that the unit activates is an output, too; it has nothing to do with what follows.
+        for (elements, elements_are_outputs) in [(&mut outputs, true), (&mut unknowns, false)] {
+            let count = elements.len();
+            elements.retain(|element| row(element.attribute(key).unwrap()) < description.variables.len());
+            let clocks = form.edition == Edition::Clocked && elements_are_outputs;
+            assert_eq!(count - elements.len(), usize::from(clocks));
+        }
+        let rows = |elements: &[&Element]| -> Vec<usize> {
+            elements.iter().map(|element| row(element.attribute(key).unwrap())).collect()
+        };
+        let with_causality = |wanted: &[Causality]| -> Vec<usize> {
+            let rows = description.variables.iter().enumerate();
+            rows.filter(|(_, row)| wanted.contains(&row.causality)).map(|(index, _)| index).collect()
+        };
+        assert_eq!(rows(&outputs), with_causality(&[Causality::Output]));
+        let mut expected = with_causality(&[Causality::Output, Causality::CalculatedParameter]);
+        let derivatives: Vec<usize> =
+            description.continuous_states().map(|(_, derivative)| derivative).collect();
+        expected.extend(description.continuous_states().flat_map(|(state, derivative)| [state, derivative]));
+        expected.sort_unstable();
+        expected.dedup();
+        assert_eq!(rows(&unknowns), expected);
+
+        let (listed, indicators): (Vec<&Element>, Vec<&Element>) = match form.version {
+            FmiVersion::Two => (
+                structure.children_named("Derivatives").flat_map(|element| &element.children).collect(),
+                Vec::new(),
+            ),
+            FmiVersion::Three => (
+                structure.children_named("ContinuousStateDerivative").collect(),
+                structure.children_named("EventIndicator").collect(),
+            ),
+        };
+        assert_eq!(rows(&listed), derivatives);
+        if form.version == FmiVersion::Three {
+            assert_eq!(rows(&indicators), description.event_indicators().collect::<Vec<_>>());
+        }
+        for unknown in outputs.into_iter().chain(listed).chain(indicators) {
+            let variable = &description.variables[row(unknown.attribute(key).unwrap())];
+            let names: Vec<&str> = unknown
+                .attribute("dependencies")
+                .unwrap()
+                .split_whitespace()
+                .map(|text| description.variables[row(text)].name)
+                .collect();
+            let kinds: Vec<&str> =
+                unknown.attribute("dependenciesKind").unwrap_or("").split_whitespace().collect();
+            let found: BTreeSet<(&str, &str)> = names.iter().copied().zip(kinds).collect();
+            // Parameters are knowns of FMI 3.0 only.
+            let is_known = |name: &str| {
+                let (_, known) = description.find(name).unwrap();
+                form.version == FmiVersion::Three || known.causality != Causality::Parameter
+            };
+            let row = row(unknown.attribute(key).unwrap());
+            let found_in_equations = description.dependencies().swap_remove(row).at_an_instant;
+            let declared: BTreeSet<(&str, &str)> = found_in_equations
+                .iter()
+                .map(|(known, kind)| {
+                    let kind = match kind {
+                        DependencyKind::Constant => "constant",
+                        DependencyKind::Fixed => "fixed",
+                        DependencyKind::Discrete => "discrete",
+                        DependencyKind::Dependent => "dependent",
+                    };
+                    (description.variables[*known].name, kind)
+                })
+                .filter(|(name, _)| is_known(name))
+                .collect();
+            assert_eq!(found, declared, "{}", variable.name);
+        }
+
+        for unknown in unknowns {
+            let variable = &description.variables[row(unknown.attribute(key).unwrap())];
+            let dependencies: Vec<usize> =
+                unknown.attribute("dependencies").unwrap().split_whitespace().map(row).collect();
+            assert!(dependencies.is_sorted_by(|a, b| a < b), "{}", variable.name);
+            let row = row(unknown.attribute(key).unwrap());
+            assert_eq!(dependencies, description.dependencies()[row].initially, "{}", variable.name);
+            for known in &dependencies {
+                let causality = description.variables[*known].causality;
+                assert!(
+                    matches!(causality, Causality::Parameter | Causality::Input | Causality::Independent),
+                    "{} follows from what is no known of the initialisation",
+                    variable.name
+                );
+            }
+            let kinds = unknown.attribute("dependenciesKind").unwrap_or("").split_whitespace();
+            assert_eq!(kinds.collect::<Vec<_>>(), vec!["dependent"; dependencies.len()]);
+        }
+    });
+}
+
+#[test]
+fn experiment_and_log_categories_are_given() {
+    check_all(|description, _, root| {
+        let experiment = root.child("DefaultExperiment");
+        for (attribute, value) in
+            [("startTime", 0.0), ("stopTime", description.stop_time), ("stepSize", description.step_size)]
+        {
+            assert_eq!(experiment.attribute(attribute).unwrap().parse(), Ok(value));
+        }
+        assert_eq!(experiment.attribute("tolerance"), None);
+        let categories = &root.child("LogCategories").children;
+        let names: Vec<&str> =
+            categories.iter().map(|category| category.attribute("name").unwrap()).collect();
+        assert_eq!(names, ["logStatusError", "logStatusFatal", "logEvents", "logObserver"]);
+        assert!(categories.iter().all(|category| !category.attribute("description").unwrap().is_empty()));
+    });
+}
