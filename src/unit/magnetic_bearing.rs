@@ -1,24 +1,26 @@
 //! What plant and controller of the magnetic bearing share: the choice of the map, bias and saturation flux.
 
+use super::choice::choice;
 use super::quantity::{Enumeration, MAGNETIC_FLUX};
 use super::variable::{Kind, Variable};
 use crate::plant::magnetic_bearing::Map;
 
-pub static MAP: Enumeration = Enumeration {
-    name: "BearingMap",
-    description: "Closed form of a step under a held voltage",
-    items: &[
-        ("exact", "Solution of (3), split where the flux crosses zero"),
-        ("printed", "Equation (4a) as printed, wrong across a flux zero crossing"),
-    ],
-};
+choice! {
+    /// Closed form of a step.
+    pub enum MapChoice = "BearingMap", "Closed form of a step under a held voltage" {
+        Exact = "exact", "Solution of (3), split where the flux crosses zero";
+        Printed = "printed", "Equation (4a) as printed, wrong across a flux zero crossing";
+    }
+}
 
-/// Number of an item of [`MAP`] for use as a start value.
-pub const EXACT: f64 = 1.0;
-pub const PRINTED: f64 = 2.0;
+pub static MAP: Enumeration = MapChoice::ENUMERATION;
 
+/// The map that a value of the table stands for.
 pub fn map(value: f64) -> Map {
-    if value == PRINTED { Map::Printed } else { Map::Exact }
+    match MapChoice::from_number(value) {
+        MapChoice::Exact => Map::Exact,
+        MapChoice::Printed => Map::Printed,
+    }
 }
 
 pub const fn bias_flux() -> Variable {

@@ -1,8 +1,10 @@
 //! What is exported: per unit its variable table, and how plant, observer and law are wired and sampled.
 //! Knows nothing of FMI.
 
+mod choice;
 pub mod continuous;
 pub mod continuous_plant;
+mod controller_choices;
 pub mod description;
 pub mod edition;
 mod end_stop_events;

@@ -7,6 +7,7 @@ use crate::controller::saturate;
 use crate::observer::ball_observer::{BallEstimate, BallObserver};
 use crate::plant::levitated_ball::State;
 use crate::signal::{BallReferenceFilter, SmoothReference};
+use crate::unit::controller_choices::Feedback;
 use crate::unit::sampled_controller::{ControllerRows, ObserverAndLaw, Sample};
 use crate::unit::{Description, Journal, Topic, UnitError};
 use serde::{Deserialize, Serialize};
@@ -48,7 +49,6 @@ impl ObserverAndLaw<COUNT> for BallObserverAndLaw {
         voltage: VOLTAGE_OUTPUT,
         voltage_applied: VOLTAGE_APPLIED,
         voltage_source: OBSERVER_VOLTAGE_SOURCE,
-        applied: APPLIED,
     };
 
     fn new(values: &[f64; COUNT]) -> Self {
@@ -89,7 +89,7 @@ impl ObserverAndLaw<COUNT> for BallObserverAndLaw {
             note_restart(current, sample, journal);
         }
         let reference = self.reference.output(rate);
-        let fed_back = if values[CONTROLLER_FEEDBACK] == STATE {
+        let fed_back = if Feedback::State.is(values[CONTROLLER_FEEDBACK]) {
             State {
                 position: values[STATE_POSITION],
                 velocity: values[STATE_VELOCITY],

@@ -24,16 +24,16 @@ pub(super) fn observer_settings(values: &[f64; COUNT]) -> BallObserverSettings {
 
 fn estimator(values: &[f64; COUNT]) -> FluxEstimator {
     let gain = values[NEWTON_GAIN];
-    match values[OBSERVER] {
-        POLYNOMIAL_NEWTON => FluxEstimator::Newton { gain, adaptation: None },
-        POLYNOMIAL_NEWTON_ADAPTIVE => {
-            let blamed = match values[ADAPTATION] {
-                VOLTAGE_OFFSET => Adaptation::VoltageOffset,
-                _ => Adaptation::Resistance,
+    match ObserverKind::from_number(values[OBSERVER]) {
+        ObserverKind::PolynomialNewton => FluxEstimator::Newton { gain, adaptation: None },
+        ObserverKind::PolynomialNewtonAdaptive => {
+            let blamed = match AdaptationKind::from_number(values[ADAPTATION]) {
+                AdaptationKind::Resistance => Adaptation::Resistance,
+                AdaptationKind::VoltageOffset => Adaptation::VoltageOffset,
             };
             FluxEstimator::Newton { gain, adaptation: Some((blamed, values[ADAPTATION_GAIN])) }
         }
-        _ => {
+        ObserverKind::Drem => {
             let mixing = MixingSettings { gain: values[GAIN], excitation_scale: values[EXCITATION_SCALE] };
             match values[NORMALISATION] {
                 0.0 => FluxEstimator::Mixing(mixing),

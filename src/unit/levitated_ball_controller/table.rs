@@ -1,6 +1,8 @@
 //! Variables and description of the controller of the levitated ball.
 
 use crate::unit::Description;
+use crate::unit::choice::choice;
+use crate::unit::controller_choices::{Feedback, VoltageSource};
 use crate::unit::levitated_ball::{
     ADAPTATION_GAIN as ADAPTATION_GAIN_QUANTITY, CURRENT, FLUX, LABORATORY_FLUX, POSITION, RATE,
     RESISTANCE as RESISTANCE_QUANTITY, VELOCITY, VOLTAGE, gap, gravity, inductance_constant, mass,
@@ -11,48 +13,27 @@ use crate::unit::quantity::{DURATION, Enumeration, RATIO, TIME as TIME_QUANTITY}
 use crate::unit::start_delay::start_delay;
 use crate::unit::variable::{Kind, Variability, Variable, variable_table};
 
-static OBSERVER_KIND: Enumeration = Enumeration {
-    name: "BallObserver",
-    description: "Estimator of the flux offset",
-    items: &[
-        ("drem", "Dynamic regressor extension and mixing, Proposition 6"),
-        ("polynomial_newton", "Newton iteration in time on the same regression"),
-        ("polynomial_newton_adaptive", "The same, which also learns the resistance or a voltage offset"),
-    ],
-};
-/// Numbers of the items; [`OBSERVER`] is `drem` at the start.
-pub(super) const POLYNOMIAL_NEWTON: f64 = 2.0;
-pub(super) const POLYNOMIAL_NEWTON_ADAPTIVE: f64 = 3.0;
+choice! {
+    pub(super) enum ObserverKind = "BallObserver", "Estimator of the flux offset" {
+        Drem = "drem", "Dynamic regressor extension and mixing, Proposition 6";
+        PolynomialNewton = "polynomial_newton", "Newton iteration in time on the same regression";
+        PolynomialNewtonAdaptive = "polynomial_newton_adaptive",
+            "The same, which also learns the resistance or a voltage offset";
+    }
+}
 
-static ADAPTATION_KIND: Enumeration = Enumeration {
-    name: "BallAdaptation",
-    description: "What polynomial_newton_adaptive learns",
-    items: &[
-        ("resistance", "The resistance of the coil"),
-        ("voltage_offset", "A constant that adds to the voltage"),
-    ],
-};
-/// Number of the item `voltage_offset`.
-pub(super) const VOLTAGE_OFFSET: f64 = 2.0;
+choice! {
+    pub(super) enum AdaptationKind = "BallAdaptation", "What polynomial_newton_adaptive learns" {
+        Resistance = "resistance", "The resistance of the coil";
+        VoltageOffset = "voltage_offset", "A constant that adds to the voltage";
+    }
+}
 
-static VOLTAGE_SOURCE: Enumeration = Enumeration {
-    name: "BallVoltageSource",
-    description: "Which voltage the observer believes acted over the last sample",
-    items: &[
-        ("command", "The voltage this unit put out"),
-        ("applied", "The input voltage_applied, right in every exchange order"),
-    ],
-};
-/// Number of the item `applied`.
-pub(super) const APPLIED: f64 = 2.0;
-
-static FEEDBACK: Enumeration = Enumeration {
-    name: "BallFeedback",
-    description: "What the law is fed with",
-    items: &[("estimate", "The observer's estimate"), ("state", "The inputs state.*, for comparison")],
-};
-/// Number of the item `state`.
-pub(super) const STATE: f64 = 2.0;
+static OBSERVER_KIND: Enumeration = ObserverKind::ENUMERATION;
+static ADAPTATION_KIND: Enumeration = AdaptationKind::ENUMERATION;
+static VOLTAGE_SOURCE: Enumeration = Enumeration { name: "BallVoltageSource", ..VoltageSource::ENUMERATION };
+static FEEDBACK: Enumeration =
+    Enumeration { name: "BallFeedback", description: "What the law is fed with", ..Feedback::ENUMERATION };
 
 const fn prefilter(name: &'static str, start: f64) -> Variable {
     Variable::parameter(name, Kind::Real(&RATE), start)
@@ -125,7 +106,7 @@ variable_table! {
         .describe("T, the unit ticks at all multiples of it, whatever the communication step size");
     START_DELAY = start_delay();
     LONGEST_STEP = longest_step();
-    OBSERVER = Variable::parameter("observer.kind", Kind::Enumeration(&OBSERVER_KIND), 1.0)
+    OBSERVER = Variable::parameter("observer.kind", Kind::Enumeration(&OBSERVER_KIND), ObserverKind::Drem.number())
         .describe("Estimator of the flux offset");
     GAIN = Variable::tunable("observer.gain", Kind::Real(&RATE), 10.0)
         .range(0.0, 1e9)
@@ -145,7 +126,7 @@ variable_table! {
     NEWTON_GAIN = Variable::tunable("observer.newton_gain", Kind::Real(&RATE), 160.0)
         .range(0.0, 1e6)
         .describe("Rate at which polynomial_newton and its adaptive variant correct the offset");
-    ADAPTATION = Variable::parameter("observer.adaptation", Kind::Enumeration(&ADAPTATION_KIND), 1.0)
+    ADAPTATION = Variable::parameter("observer.adaptation", Kind::Enumeration(&ADAPTATION_KIND), AdaptationKind::Resistance.number())
         .describe("What polynomial_newton_adaptive learns");
     ADAPTATION_GAIN = Variable::tunable("observer.adaptation_gain", Kind::Real(&ADAPTATION_GAIN_QUANTITY), 3000.0)
         .range(0.0, 1e9)
@@ -178,7 +159,7 @@ variable_table! {
         .range(-10.0, 1.0)
         .describe("Estimate of y at the start, unless it comes from the current");
     OBSERVER_VOLTAGE_SOURCE =
-        Variable::parameter("observer.voltage_source", Kind::Enumeration(&VOLTAGE_SOURCE), 1.0)
+        Variable::parameter("observer.voltage_source", Kind::Enumeration(&VOLTAGE_SOURCE), VoltageSource::Command.number())
         .describe("Which voltage the observer believes acted over the last sample");
     POLE = Variable::tunable("controller.pole", Kind::Real(&RATE), 60.0)
         .range(0.0, 1e5)
@@ -189,7 +170,7 @@ variable_table! {
     INITIAL_REFERENCE = Variable::parameter("controller.initial_reference", Kind::Real(&POSITION), 0.0)
         .range(-10.0, 1.0)
         .describe("Where the filtered reference starts");
-    CONTROLLER_FEEDBACK = Variable::tunable("controller.feedback", Kind::Enumeration(&FEEDBACK), 1.0)
+    CONTROLLER_FEEDBACK = Variable::tunable("controller.feedback", Kind::Enumeration(&FEEDBACK), Feedback::Estimate.number())
         .describe("What the law is fed with");
     VOLTAGE_LIMIT = Variable::tunable("controller.voltage_limit", Kind::Real(&VOLTAGE), 12.0)
         .range(0.0, 1e6)

@@ -70,7 +70,6 @@ impl ObserverAndLaw<COUNT> for RigObserverAndLaw {
         voltage: VOLTAGE_OUTPUT,
         voltage_applied: VOLTAGE_APPLIED,
         voltage_source: OBSERVER_VOLTAGE_SOURCE,
-        applied: APPLIED,
     };
 
     fn new(values: &[f64; COUNT]) -> Self {

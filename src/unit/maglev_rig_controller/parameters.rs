@@ -18,37 +18,41 @@ const COST_OF_CLOSED_FORM: f64 = 3e-6;
 const COST_OF_SUBSTEP: f64 = 300e-9;
 
 pub(super) fn observer_settings(values: &[f64; COUNT]) -> ExtendedStateSettings {
-    let gains = if values[OBSERVER_TUNING] == GAINS {
-        [values[OBSERVER_GAIN_1], values[OBSERVER_GAIN_2], values[OBSERVER_GAIN_3]]
-    } else {
-        gains_from_bandwidth(values[OBSERVER_BANDWIDTH])
+    let gains = match Tuning::from_number(values[OBSERVER_TUNING]) {
+        Tuning::Gains => [values[OBSERVER_GAIN_1], values[OBSERVER_GAIN_2], values[OBSERVER_GAIN_3]],
+        Tuning::Bandwidth => gains_from_bandwidth(values[OBSERVER_BANDWIDTH]),
     };
-    let is_nonlinear = values[OBSERVER] == NONLINEAR;
-    let injection = if is_nonlinear {
-        InjectionChoice::Nonlinear(NonlinearInjection::new(
+    let kind = ObserverKind::from_number(values[OBSERVER]);
+    let injection = match kind {
+        ObserverKind::Linear => InjectionChoice::Linear(LinearInjection { gains }),
+        ObserverKind::Nonlinear => InjectionChoice::Nonlinear(NonlinearInjection::new(
             gains,
             [values[EXPONENT_1], values[EXPONENT_2], values[EXPONENT_3]],
             [values[LINEAR_ZONE_1], values[LINEAR_ZONE_2], values[LINEAR_ZONE_3]],
-        ))
-    } else {
-        InjectionChoice::Linear(LinearInjection { gains })
+        )),
     };
     let runge_kutta = Discretisation::RungeKutta(values[OBSERVER_SUBSTEPS] as u32);
-    let discretisation = match values[OBSERVER_DISCRETISATION] {
-        EXACT => Discretisation::Exact,
-        RUNGE_KUTTA => runge_kutta,
-        EULER => Discretisation::Euler,
-        _ if is_nonlinear => runge_kutta,
-        _ => Discretisation::Exact,
+    let discretisation = match (DiscretisationKind::from_number(values[OBSERVER_DISCRETISATION]), kind) {
+        (DiscretisationKind::Exact, _) | (DiscretisationKind::Automatic, ObserverKind::Linear) => {
+            Discretisation::Exact
+        }
+        (DiscretisationKind::RungeKutta, _) | (DiscretisationKind::Automatic, ObserverKind::Nonlinear) => {
+            runge_kutta
+        }
+        (DiscretisationKind::Euler, _) => Discretisation::Euler,
     };
-    let form = if values[OBSERVER_FORM] == CURRENT { Form::Current } else { Form::Predictor };
+    let form = match FormKind::from_number(values[OBSERVER_FORM]) {
+        FormKind::Predictor => Form::Predictor,
+        FormKind::Current => Form::Current,
+    };
     let (input_gain, sample_time) = (values[OBSERVER_INPUT_GAIN], values[SAMPLE_TIME]);
     ExtendedStateSettings { injection, input_gain, discretisation, form, sample_time }
 }
 
 /// The law divides by its input gain.
 pub(super) fn check_input_gain(values: &[f64; COUNT]) -> Result<(), UnitError> {
-    if values[CONTROLLER_KIND_CHOICE] != DISTURBANCE_REJECTION || values[CONTROLLER_INPUT_GAIN] != 0.0 {
+    let divides = LawKind::DisturbanceRejection.is(values[CONTROLLER_KIND_CHOICE]);
+    if !divides || values[CONTROLLER_INPUT_GAIN] != 0.0 {
         return Ok(());
     }
     let variable = &VARIABLES[CONTROLLER_INPUT_GAIN];
@@ -79,7 +83,10 @@ pub(super) enum Measurement {
 impl Measurement {
     pub(super) fn from_values(values: &[f64; COUNT]) -> Self {
         let sensor = PositionSensor { gain: values[SENSOR_GAIN], offset: values[SENSOR_OFFSET] };
-        if values[OBSERVER_MEASUREMENT] == METRES { Self::Metres(sensor) } else { Self::Volts(sensor) }
+        match MeasurementKind::from_number(values[OBSERVER_MEASUREMENT]) {
+            MeasurementKind::Volts => Self::Volts(sensor),
+            MeasurementKind::Metres => Self::Metres(sensor),
+        }
     }
 
     /// What the observer measures at a sensor voltage.
@@ -128,14 +135,14 @@ impl Measurement {
 
 /// z at the first tick, for what the observer measures then.
 pub(super) fn initial_estimate(values: &[f64; COUNT], measurement: f64) -> ExtendedState {
-    match values[OBSERVER_INITIAL] {
-        ZERO => ExtendedState::default(),
-        STEADY => ExtendedState {
+    match Initial::from_number(values[OBSERVER_INITIAL]) {
+        Initial::Zero => ExtendedState::default(),
+        Initial::Steady => ExtendedState {
             position: measurement,
             velocity: 0.0,
             extended: -values[OBSERVER_INPUT_GAIN] * values[CONTROLLER_OPERATING_VOLTAGE],
         },
-        _ => ExtendedState { position: measurement, ..ExtendedState::default() },
+        Initial::Matched => ExtendedState { position: measurement, ..ExtendedState::default() },
     }
 }
 
@@ -147,22 +154,24 @@ pub(super) enum Law {
 }
 
 pub(super) fn law(values: &[f64; COUNT]) -> Law {
-    if values[CONTROLLER_KIND_CHOICE] == DISTURBANCE_REJECTION {
-        return Law::DisturbanceRejection(DisturbanceRejection {
+    match LawKind::from_number(values[CONTROLLER_KIND_CHOICE]) {
+        LawKind::DisturbanceRejection => Law::DisturbanceRejection(DisturbanceRejection {
             bandwidth: values[CONTROLLER_BANDWIDTH],
             input_gain: values[CONTROLLER_INPUT_GAIN],
-        });
+        }),
+        LawKind::Pid => Law::Pid(PidSettings {
+            proportional_gain: values[KP],
+            integral_gain: values[KI],
+            derivative_gain: values[KD],
+            derivative: match DerivativeKind::from_number(values[CONTROLLER_DERIVATIVE]) {
+                DerivativeKind::Error => Derivative::Error,
+                DerivativeKind::Measurement => Derivative::Measurement,
+            },
+            operating_voltage: values[CONTROLLER_OPERATING_VOLTAGE],
+            sample_time: values[SAMPLE_TIME],
+            limits: limits(values),
+        }),
     }
-    let on_measurement = values[CONTROLLER_DERIVATIVE] == OF_MEASUREMENT;
-    Law::Pid(PidSettings {
-        proportional_gain: values[KP],
-        integral_gain: values[KI],
-        derivative_gain: values[KD],
-        derivative: if on_measurement { Derivative::Measurement } else { Derivative::Error },
-        operating_voltage: values[CONTROLLER_OPERATING_VOLTAGE],
-        sample_time: values[SAMPLE_TIME],
-        limits: limits(values),
-    })
 }
 
 pub(super) fn limits(values: &[f64; COUNT]) -> (f64, f64) {

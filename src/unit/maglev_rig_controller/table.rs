@@ -1,6 +1,8 @@
 //! Variables and description of the controller of the maglev rig.
 
 use crate::unit::Description;
+use crate::unit::choice::choice;
+use crate::unit::controller_choices::VoltageSource;
 use crate::unit::longest_step::longest_step;
 use crate::unit::maglev_rig::{
     BALL_ACCELERATION, BALL_DISTANCE, BALL_VELOCITY, BANDWIDTH, DRIVER_VOLTAGE, FIRST_OBSERVER_GAIN,
@@ -13,118 +15,79 @@ use crate::unit::quantity::{DURATION, Enumeration, RATE, RATIO, TIME as TIME_QUA
 use crate::unit::start_delay::start_delay;
 use crate::unit::variable::{Kind, Variability, Variable, variable_table};
 
-static OBSERVER_KIND: Enumeration = Enumeration {
-    name: "RigObserver",
-    description: "Extended state observer",
-    items: &[
-        ("linear", "LESO, the error is fed in with constant gains, (12)"),
-        ("nonlinear", "NESO, the error is fed in through Han's function fal, (11)"),
-    ],
-};
-/// Number of the item `nonlinear`.
-pub(super) const NONLINEAR: f64 = 2.0;
+choice! {
+    pub(super) enum ObserverKind = "RigObserver", "Extended state observer" {
+        Linear = "linear", "LESO, the error is fed in with constant gains, (12)";
+        Nonlinear = "nonlinear", "NESO, the error is fed in through Han's function fal, (11)";
+    }
+}
 
-static TUNING: Enumeration = Enumeration {
-    name: "RigObserverTuning",
-    description: "Where the observer's gains come from",
-    items: &[
-        ("bandwidth", "3 w, 3 w^2, w^3 with w = observer.bandwidth, (13)"),
-        ("gains", "The parameters observer.gain"),
-    ],
-};
-/// Number of the item `gains`.
-pub(super) const GAINS: f64 = 2.0;
+choice! {
+    pub(super) enum Tuning = "RigObserverTuning", "Where the observer's gains come from" {
+        Bandwidth = "bandwidth", "3 w, 3 w^2, w^3 with w = observer.bandwidth, (13)";
+        Gains = "gains", "The parameters observer.gain";
+    }
+}
 
-static DISCRETISATION: Enumeration = Enumeration {
-    name: "RigObserverDiscretisation",
-    description: "How the observer's differential equation is solved over a sample",
-    items: &[
-        ("exact", "Closed form for held signals; of nonlinear with its gains frozen over the sample"),
-        ("runge_kutta", "Classical Runge-Kutta, observer.substeps times per sample"),
-        ("euler", "Forward Euler; nonlinear is unstable by it at 1 ms with the printed parameters"),
-        ("automatic", "exact for linear, runge_kutta for nonlinear"),
-    ],
-};
-/// Numbers of the items.
-pub(super) const EXACT: f64 = 1.0;
-pub(super) const RUNGE_KUTTA: f64 = 2.0;
-pub(super) const EULER: f64 = 3.0;
-const AUTOMATIC: f64 = 4.0;
+choice! {
+    pub(super) enum DiscretisationKind = "RigObserverDiscretisation",
+        "How the observer's differential equation is solved over a sample"
+    {
+        Exact = "exact", "Closed form for held signals; of nonlinear with its gains frozen over the sample";
+        RungeKutta = "runge_kutta", "Classical Runge-Kutta, observer.substeps times per sample";
+        Euler = "euler", "Forward Euler; nonlinear is unstable by it at 1 ms with the printed parameters";
+        Automatic = "automatic", "exact for linear, runge_kutta for nonlinear";
+    }
+}
 
-static FORM: Enumeration = Enumeration {
-    name: "RigObserverForm",
-    description: "Which samples an estimate uses",
-    items: &[
-        ("predictor", "Those before the tick; the measurement is held over a sample"),
-        (
-            "current",
+choice! {
+    pub(super) enum FormKind = "RigObserverForm", "Which samples an estimate uses" {
+        Predictor = "predictor", "Those before the tick; the measurement is held over a sample";
+        Current = "current",
             "That of the tick, too: exact and euler correct a prediction with it, runge_kutta takes the measurement \
-             for a straight line between samples",
-        ),
-    ],
-};
-/// Number of the item `current`.
-pub(super) const CURRENT: f64 = 2.0;
+             for a straight line between samples";
+    }
+}
 
-static MEASUREMENT: Enumeration = Enumeration {
-    name: "RigObserverMeasurement",
-    description: "What the observer takes for its measurement",
-    items: &[
-        ("volts", "The sensor voltage"),
-        ("metres", "The distance that sensor_gain and sensor_offset make of it"),
-    ],
-};
-/// Number of the item `metres`.
-pub(super) const METRES: f64 = 2.0;
+choice! {
+    pub(super) enum MeasurementKind = "RigObserverMeasurement", "What the observer takes for its measurement" {
+        Volts = "volts", "The sensor voltage";
+        Metres = "metres", "The distance that sensor_gain and sensor_offset make of it";
+    }
+}
 
-static INITIAL: Enumeration = Enumeration {
-    name: "RigObserverStart",
-    description: "Estimate at the first tick",
-    items: &[
-        ("matched", "Position as measured, all else zero"),
-        ("zero", "Zero, as the paper assumes: its Table 5 is the transient that follows"),
-        ("steady", "At rest as measured, held by controller.operating_voltage: no transient"),
-    ],
-};
-/// Numbers of the items.
-pub(super) const ZERO: f64 = 2.0;
-pub(super) const STEADY: f64 = 3.0;
+choice! {
+    pub(super) enum Initial = "RigObserverStart", "Estimate at the first tick" {
+        Matched = "matched", "Position as measured, all else zero";
+        Zero = "zero", "Zero, as the paper assumes: its Table 5 is the transient that follows";
+        Steady = "steady", "At rest as measured, held by controller.operating_voltage: no transient";
+    }
+}
 
-static VOLTAGE_SOURCE: Enumeration = Enumeration {
-    name: "VoltageSource",
-    description: "Which voltage the observer believes acted over the last sample",
-    items: &[
-        ("command", "The voltage this unit put out"),
-        ("applied", "The input voltage_applied, right in every exchange order"),
-    ],
-};
-/// Number of the item `applied`.
-pub(super) const APPLIED: f64 = 2.0;
+choice! {
+    pub(super) enum LawKind = "RigController", "Control law" {
+        Pid = "pid", "Digital PID of the sensor voltage with anti-windup";
+        DisturbanceRejection = "disturbance_rejection",
+            "Through the extended state: what is unknown of the acceleration is cancelled";
+    }
+}
 
-static CONTROLLER_KIND: Enumeration = Enumeration {
-    name: "RigController",
-    description: "Control law",
-    items: &[
-        ("pid", "Digital PID of the sensor voltage with anti-windup"),
-        (
-            "disturbance_rejection",
-            "Through the extended state: what is unknown of the acceleration is cancelled",
-        ),
-    ],
-};
-/// Number of the item `disturbance_rejection`.
-pub(super) const DISTURBANCE_REJECTION: f64 = 2.0;
+choice! {
+    pub(super) enum DerivativeKind = "RigDerivative", "What the derivative of the PID is taken of" {
+        Error = "error", "Of the error, as reconstructed: a step of the reference kicks the voltage";
+        Measurement = "measurement", "Of the sensor voltage alone";
+    }
+}
 
-static DERIVATIVE: Enumeration = Enumeration {
-    name: "RigDerivative",
-    description: "What the derivative of the PID is taken of",
-    items: &[
-        ("error", "Of the error, as reconstructed: a step of the reference kicks the voltage"),
-        ("measurement", "Of the sensor voltage alone"),
-    ],
-};
-/// Number of the item `measurement`.
-pub(super) const OF_MEASUREMENT: f64 = 2.0;
+static OBSERVER_KIND: Enumeration = ObserverKind::ENUMERATION;
+static TUNING: Enumeration = Tuning::ENUMERATION;
+static DISCRETISATION: Enumeration = DiscretisationKind::ENUMERATION;
+static FORM: Enumeration = FormKind::ENUMERATION;
+static MEASUREMENT: Enumeration = MeasurementKind::ENUMERATION;
+static INITIAL: Enumeration = Initial::ENUMERATION;
+static VOLTAGE_SOURCE: Enumeration = VoltageSource::ENUMERATION;
+static CONTROLLER_KIND: Enumeration = LawKind::ENUMERATION;
+static DERIVATIVE: Enumeration = DerivativeKind::ENUMERATION;
 
 variable_table! {
     TIME = Variable::time();
@@ -174,9 +137,9 @@ variable_table! {
         .describe("T, the unit ticks at all multiples of it, whatever the communication step size");
     START_DELAY = start_delay();
     LONGEST_STEP = longest_step();
-    OBSERVER = Variable::parameter("observer.kind", Kind::Enumeration(&OBSERVER_KIND), 1.0)
+    OBSERVER = Variable::parameter("observer.kind", Kind::Enumeration(&OBSERVER_KIND), ObserverKind::Linear.number())
         .describe("Extended state observer");
-    OBSERVER_TUNING = Variable::tunable("observer.tuning", Kind::Enumeration(&TUNING), 1.0)
+    OBSERVER_TUNING = Variable::tunable("observer.tuning", Kind::Enumeration(&TUNING), Tuning::Bandwidth.number())
         .describe("Where the observer's gains come from, of either kind");
     OBSERVER_BANDWIDTH = Variable::tunable("observer.bandwidth", Kind::Real(&BANDWIDTH), 100.0)
         .range(1e-3, 1e5)
@@ -214,21 +177,21 @@ variable_table! {
         .range(1e-9, 1e3)
         .describe("delta3 of nonlinear");
     OBSERVER_DISCRETISATION =
-        Variable::parameter("observer.discretisation", Kind::Enumeration(&DISCRETISATION), AUTOMATIC)
+        Variable::parameter("observer.discretisation", Kind::Enumeration(&DISCRETISATION), DiscretisationKind::Automatic.number())
         .describe("How the observer's differential equation is solved over a sample");
-    OBSERVER_FORM = Variable::parameter("observer.form", Kind::Enumeration(&FORM), 1.0)
+    OBSERVER_FORM = Variable::parameter("observer.form", Kind::Enumeration(&FORM), FormKind::Predictor.number())
         .describe("Which samples an estimate uses");
     OBSERVER_SUBSTEPS = Variable::parameter("observer.substeps", Kind::Integer, 1.0)
         .range(1.0, 1000.0)
         .describe("Steps of runge_kutta per sample");
-    OBSERVER_MEASUREMENT = Variable::parameter("observer.measurement", Kind::Enumeration(&MEASUREMENT), 1.0)
+    OBSERVER_MEASUREMENT = Variable::parameter("observer.measurement", Kind::Enumeration(&MEASUREMENT), MeasurementKind::Volts.number())
         .describe("What the observer takes for its measurement");
-    OBSERVER_INITIAL = Variable::parameter("observer.initial", Kind::Enumeration(&INITIAL), STEADY)
+    OBSERVER_INITIAL = Variable::parameter("observer.initial", Kind::Enumeration(&INITIAL), Initial::Steady.number())
         .describe("Estimate at the first tick");
     OBSERVER_VOLTAGE_SOURCE =
-        Variable::parameter("observer.voltage_source", Kind::Enumeration(&VOLTAGE_SOURCE), 1.0)
+        Variable::parameter("observer.voltage_source", Kind::Enumeration(&VOLTAGE_SOURCE), VoltageSource::Command.number())
         .describe("Which voltage the observer believes acted over the last sample");
-    CONTROLLER_KIND_CHOICE = Variable::tunable("controller.kind", Kind::Enumeration(&CONTROLLER_KIND), 1.0)
+    CONTROLLER_KIND_CHOICE = Variable::tunable("controller.kind", Kind::Enumeration(&CONTROLLER_KIND), LawKind::Pid.number())
         .describe("Control law");
     KP = Variable::tunable("controller.kp", Kind::Real(&RATIO), 4.2)
         .range(-1e6, 1e6)
@@ -239,7 +202,7 @@ variable_table! {
     KD = Variable::tunable("controller.kd", Kind::Real(&DURATION), 0.02)
         .range(-1e3, 1e3)
         .describe("Kd of pid, printed in Table 2");
-    CONTROLLER_DERIVATIVE = Variable::tunable("controller.derivative", Kind::Enumeration(&DERIVATIVE), 1.0)
+    CONTROLLER_DERIVATIVE = Variable::tunable("controller.derivative", Kind::Enumeration(&DERIVATIVE), DerivativeKind::Error.number())
         .describe("What the derivative of pid is taken of");
     CONTROLLER_OPERATING_VOLTAGE =
         Variable::tunable("controller.operating_voltage", Kind::Real(&DRIVER_VOLTAGE), OPERATING_VOLTAGE)

@@ -5,6 +5,7 @@ use super::table::*;
 use crate::controller::{BearingLaw, saturate};
 use crate::observer::{BearingObserver, Estimate};
 use crate::plant::magnetic_bearing::State;
+use crate::unit::controller_choices::Feedback;
 use crate::unit::sampled_controller::{ControllerRows, ObserverAndLaw, Sample};
 use crate::unit::{Description, Journal, Topic};
 use serde::{Deserialize, Serialize};
@@ -41,7 +42,6 @@ impl ObserverAndLaw<COUNT> for BearingObserverAndLaw {
         voltage: VOLTAGE_OUTPUT,
         voltage_applied: VOLTAGE_APPLIED,
         voltage_source: OBSERVER_VOLTAGE_SOURCE,
-        applied: APPLIED,
     };
 
     fn new(values: &[f64; COUNT]) -> Self {
@@ -74,7 +74,7 @@ impl ObserverAndLaw<COUNT> for BearingObserverAndLaw {
     #[inline]
     fn tick(&mut self, values: &mut [f64; COUNT], sample: Sample, journal: &mut dyn Journal) {
         let estimate = self.observer.update(values[POSITION], sample.acting_voltage);
-        let fed_back = if values[CONTROLLER_FEEDBACK] == STATE {
+        let fed_back = if Feedback::State.is(values[CONTROLLER_FEEDBACK]) {
             State { position: values[POSITION], velocity: values[STATE_VELOCITY], flux: values[STATE_FLUX] }
         } else {
             // The laws use the measured position, not its estimate.

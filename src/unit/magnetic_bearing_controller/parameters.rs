@@ -44,26 +44,26 @@ pub(super) fn observer_settings(values: &[f64; COUNT]) -> BearingObserverSetting
     let (bearing, sample_time) = (bearing(values), values[SAMPLE_TIME]);
     let (max_iterations, step_size) = (values[MAX_ITERATIONS] as u32, values[STEP_SIZE]);
     let map = map(values[OBSERVER_MAP]);
-    match values[OBSERVER] {
-        KALMAN => BearingObserverSettings::Kalman(KalmanSettings {
+    match ObserverKind::from_number(values[OBSERVER]) {
+        ObserverKind::Kalman => BearingObserverSettings::Kalman(KalmanSettings {
             bearing,
             map: Map::Exact,
             sample_time,
             position_noise: values[POSITION_NOISE],
             flux_noise: values[FLUX_NOISE],
         }),
-        kind @ (REDUCED_NEWTON | REDUCED_NEWTON_COMPENSATED) => {
+        kind @ (ObserverKind::ReducedNewton | ObserverKind::ReducedNewtonCompensated) => {
             BearingObserverSettings::ReducedNewton(ReducedNewtonSettings {
                 bearing,
                 map,
                 sample_time,
                 filter_time: values[FILTER_TIME],
-                lag_compensated: kind == REDUCED_NEWTON_COMPENSATED,
+                lag_compensated: kind == ObserverKind::ReducedNewtonCompensated,
                 max_iterations,
                 step_size,
             })
         }
-        _ => {
+        ObserverKind::Newton => {
             let line_search = values[LINE_SEARCH] != 0.0;
             let newton = NewtonSettings { bearing, map, sample_time, max_iterations, step_size, line_search };
             if values[WINDOW] > SQUARE_WINDOW {
@@ -85,11 +85,11 @@ pub(super) fn initial_estimate(values: &[f64; COUNT]) -> State {
 }
 
 pub(super) fn law(values: &[f64; COUNT]) -> BearingLaw {
-    let printed = match values[CONTROLLER_LAW] {
-        FLUX_CASCADE => return BearingLaw::FluxCascade(cascade(values), bearing(values)),
-        LAW_B => Law::B,
-        LAW_C => Law::C,
-        _ => Law::A,
+    let printed = match LawKind::from_number(values[CONTROLLER_LAW]) {
+        LawKind::FluxCascade => return BearingLaw::FluxCascade(cascade(values), bearing(values)),
+        LawKind::A => Law::A,
+        LawKind::B => Law::B,
+        LawKind::C => Law::C,
     };
     BearingLaw::Printed(printed, Gains { position: values[K1], velocity: values[K2] })
 }

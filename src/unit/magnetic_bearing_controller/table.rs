@@ -2,8 +2,10 @@
 
 use crate::observer::windowed_newton::MAX_WINDOW;
 use crate::unit::Description;
+use crate::unit::choice::choice;
+use crate::unit::controller_choices::{Feedback, VoltageSource};
 use crate::unit::longest_step::longest_step;
-use crate::unit::magnetic_bearing::{MAP, PRINTED, bias_flux, saturation_flux};
+use crate::unit::magnetic_bearing::{MAP, MapChoice, bias_flux, saturation_flux};
 use crate::unit::quantity::{
     DURATION, Enumeration, LENGTH, MAGNETIC_FLUX, POSITION_GAIN, RATE, RATIO, SQUARED_RATE,
     TIME as TIME_QUANTITY, VELOCITY, VELOCITY_GAIN, VOLTAGE,
@@ -11,60 +13,32 @@ use crate::unit::quantity::{
 use crate::unit::start_delay::start_delay;
 use crate::unit::variable::{Kind, Variability, Variable, variable_table};
 
-static OBSERVER_KIND: Enumeration = Enumeration {
-    name: "BearingObserver",
-    description: "State estimator",
-    items: &[
-        ("newton", "Full-order Newton observer, section 3"),
-        ("reduced_newton", "Reduced-order Newton observer, section 3.1, as printed"),
-        (
-            "reduced_newton_compensated",
-            "Reduced-order Newton observer with the lag of its filter compensated",
-        ),
-        ("kalman", "Extended Kalman filter on the exact map"),
-    ],
-};
-/// Numbers of the items; [`OBSERVER`] is `newton` at the start.
-pub(super) const REDUCED_NEWTON: f64 = 2.0;
-pub(super) const REDUCED_NEWTON_COMPENSATED: f64 = 3.0;
-pub(super) const KALMAN: f64 = 4.0;
+choice! {
+    pub(super) enum ObserverKind = "BearingObserver", "State estimator" {
+        Newton = "newton", "Full-order Newton observer, section 3";
+        ReducedNewton = "reduced_newton", "Reduced-order Newton observer, section 3.1, as printed";
+        ReducedNewtonCompensated = "reduced_newton_compensated",
+            "Reduced-order Newton observer with the lag of its filter compensated";
+        Kalman = "kalman", "Extended Kalman filter on the exact map";
+    }
+}
+
+choice! {
+    pub(super) enum LawKind = "BearingLaw", "Control law" {
+        A = "a", "Equation (8a)";
+        B = "b", "Equation (8b)";
+        C = "c", "Equation (8c)";
+        FluxCascade = "flux_cascade", "Position loop with a flux loop inside";
+    }
+}
+
+static OBSERVER_KIND: Enumeration = ObserverKind::ENUMERATION;
+static LAW: Enumeration = LawKind::ENUMERATION;
+static VOLTAGE_SOURCE: Enumeration = VoltageSource::ENUMERATION;
+static FEEDBACK: Enumeration = Feedback::ENUMERATION;
 
 /// Samples of the square system, the shortest window.
 pub(super) const SQUARE_WINDOW: f64 = 3.0;
-
-static VOLTAGE_SOURCE: Enumeration = Enumeration {
-    name: "VoltageSource",
-    description: "Which voltage the observer believes acted over the last sample",
-    items: &[
-        ("command", "The voltage this unit put out"),
-        ("applied", "The input voltage_applied, right in every exchange order"),
-    ],
-};
-/// Number of the item `applied`.
-pub(super) const APPLIED: f64 = 2.0;
-
-static LAW: Enumeration = Enumeration {
-    name: "BearingLaw",
-    description: "Control law",
-    items: &[
-        ("a", "Equation (8a)"),
-        ("b", "Equation (8b)"),
-        ("c", "Equation (8c)"),
-        ("flux_cascade", "Position loop with a flux loop inside"),
-    ],
-};
-/// Numbers of the items; [`CONTROLLER_LAW`] is `a` at the start.
-pub(super) const LAW_B: f64 = 2.0;
-pub(super) const LAW_C: f64 = 3.0;
-pub(super) const FLUX_CASCADE: f64 = 4.0;
-
-static FEEDBACK: Enumeration = Enumeration {
-    name: "Feedback",
-    description: "What the law is fed with besides the measured position",
-    items: &[("estimate", "The observer's estimate"), ("state", "The inputs state.*, for comparison")],
-};
-/// Number of the item `state`.
-pub(super) const STATE: f64 = 2.0;
 
 variable_table! {
     TIME = Variable::time();
@@ -115,9 +89,9 @@ variable_table! {
         .describe("T, the unit ticks at all multiples of it, whatever the communication step size");
     START_DELAY = start_delay();
     LONGEST_STEP = longest_step();
-    OBSERVER = Variable::parameter("observer.kind", Kind::Enumeration(&OBSERVER_KIND), 1.0)
+    OBSERVER = Variable::parameter("observer.kind", Kind::Enumeration(&OBSERVER_KIND), ObserverKind::Newton.number())
         .describe("State estimator");
-    OBSERVER_MAP = Variable::parameter("observer.map", Kind::Enumeration(&MAP), PRINTED)
+    OBSERVER_MAP = Variable::parameter("observer.map", Kind::Enumeration(&MAP), MapChoice::Printed.number())
         .describe("Model that the Newton observers invert; kalman always uses the exact one");
     MAX_ITERATIONS = Variable::tunable("observer.max_iterations", Kind::Integer, 10.0)
         .range(1.0, 1000.0)
@@ -154,11 +128,11 @@ variable_table! {
         .range(-1e3, 1e3)
         .describe("Third component of w0; of the Newton observers also the estimate until two past samples exist");
     OBSERVER_VOLTAGE_SOURCE =
-        Variable::parameter("observer.voltage_source", Kind::Enumeration(&VOLTAGE_SOURCE), 1.0)
+        Variable::parameter("observer.voltage_source", Kind::Enumeration(&VOLTAGE_SOURCE), VoltageSource::Command.number())
         .describe("Which voltage the observer believes acted over the last sample");
-    CONTROLLER_LAW = Variable::tunable("controller.law", Kind::Enumeration(&LAW), 1.0)
+    CONTROLLER_LAW = Variable::tunable("controller.law", Kind::Enumeration(&LAW), LawKind::A.number())
         .describe("Control law");
-    CONTROLLER_FEEDBACK = Variable::tunable("controller.feedback", Kind::Enumeration(&FEEDBACK), 1.0)
+    CONTROLLER_FEEDBACK = Variable::tunable("controller.feedback", Kind::Enumeration(&FEEDBACK), Feedback::Estimate.number())
         .describe("What the law is fed with besides the measured position");
     K1 = Variable::tunable("controller.k1", Kind::Real(&POSITION_GAIN), 0.92)
         .range(-1e6, 1e6)

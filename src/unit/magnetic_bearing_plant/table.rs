@@ -1,7 +1,7 @@
 //! Variables and description of the magnetic bearing.
 
 use crate::unit::Description;
-use crate::unit::magnetic_bearing::{EXACT, MAP, bias_flux, saturation_flux};
+use crate::unit::magnetic_bearing::{MAP, MapChoice, bias_flux, saturation_flux};
 use crate::unit::quantity::{ACCELERATION, LENGTH, MAGNETIC_FLUX, RATIO, VELOCITY, VOLTAGE};
 use crate::unit::sensor::sample_time;
 use crate::unit::variable::{Kind, Variability, Variable, variable_table};
@@ -60,7 +60,7 @@ variable_table! {
         .range(0.0, 1e3)
         .describe("For studies: standard deviation of white noise added to the flux at each communication point, not in \
             model exchange");
-    MAP_CHOICE = Variable::parameter("map", Kind::Enumeration(&MAP), EXACT)
+    MAP_CHOICE = Variable::parameter("map", Kind::Enumeration(&MAP), MapChoice::Exact.number())
         .describe("How a step is solved; of no effect in model exchange");
 }
 

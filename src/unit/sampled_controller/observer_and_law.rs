@@ -16,10 +16,8 @@ pub struct ControllerRows {
     pub voltage: usize,
     /// The voltage that acted, as the plant tells it.
     pub voltage_applied: usize,
-    /// Which of the two the observer is told.
+    /// Which of the two the observer is told, a [`crate::unit::controller_choices::VoltageSource`].
     pub voltage_source: usize,
-    /// Item of the latter that means `voltage_applied`.
-    pub applied: f64,
 }
 
 /// A tick.

@@ -3,6 +3,7 @@
 use core::array::from_fn;
 
 use super::{ObserverAndLaw, Sample};
+use crate::unit::controller_choices::VoltageSource;
 use crate::unit::sample_clock::SampleClock;
 use crate::unit::start_delay::StartDelay;
 use crate::unit::{Description, Journal, SampledUnit, TIME, Unit, UnitError};
@@ -43,7 +44,7 @@ impl<C: ObserverAndLaw<N>, const N: usize> SampledController<C, N> {
         }
         let (values, rows) = (&mut self.values, C::ROWS);
         values[rows.tick_time] = time;
-        let is_applied = values[rows.voltage_source] == rows.applied;
+        let is_applied = VoltageSource::Applied.is(values[rows.voltage_source]);
         let acting_voltage = values[if is_applied { rows.voltage_applied } else { rows.voltage }];
         let sample = Sample { time, is_first: self.awaits_first_sample, acting_voltage };
         self.awaits_first_sample = false;
