@@ -8,7 +8,6 @@ mod controller_choices;
 pub mod description;
 pub mod edition;
 mod end_stop_events;
-mod input_ramp;
 mod levitated_ball;
 mod levitated_ball_controller;
 mod levitated_ball_plant;

@@ -6,7 +6,6 @@ use super::differentiation::initialise;
 use super::{Motion, PlantEquations};
 use crate::scalar::Scalar;
 use crate::signal::{GaussianNoise, quantise};
-use crate::unit::input_ramp::end_of_ramp;
 use crate::unit::sensor::{Sensor, check_sample_time};
 use crate::unit::work::require_affordable;
 use crate::unit::{ContinuousUnit, Description, Journal, Solver, TIME, Topic, Unit, UnitError};
@@ -88,14 +87,27 @@ impl<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U: usize>
 
     #[inline]
     fn check_finite(&self, state: &[f64; X]) -> Result<(), UnitError> {
-        let components = E::STATES.into_iter().zip(*state).chain(E::also_finite(&self.values, state));
-        for (row, value) in components {
-            if !value.is_finite() {
-                let variable = &E::DESCRIPTION.variables[row];
-                return Err(UnitError::Diverged { name: variable.name, value, unit: variable.unit() });
+        let also = E::also_finite(&self.values, state);
+        if state.iter().all(|number| number.is_finite()) && also.is_none_or(|(_, number)| number.is_finite())
+        {
+            return Ok(());
+        }
+        Err(diverged::<E, N, X, U>(E::STATES.into_iter().zip(*state).chain(also)))
+    }
+
+    /// Values of the inputs at the end of a step over `duration` \[s\]. One that its slope takes out of its range is
+    /// refused, since nobody could set it there.
+    #[inline]
+    fn inputs_after(&self, begin: [f64; U], duration: f64) -> Result<[f64; U], UnitError> {
+        let end = from_fn(|input| begin[input] + self.slopes[input] * duration);
+        if self.slopes != [0.0; U] {
+            for (input, row) in
+                E::INPUTS.into_iter().enumerate().filter(|(input, _)| self.slopes[*input] != 0.0)
+            {
+                E::DESCRIPTION.variables[row].check(end[input]).map_err(UnitError::InputLeavesRange)?;
             }
         }
-        Ok(())
+        Ok(end)
     }
 }
 
@@ -171,11 +183,7 @@ impl<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U: usize>
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError> {
         require_affordable(duration, [E::load(&self.values), self.sensor.load()])?;
         let (begin, slopes) = (self.inputs(), self.slopes);
-        let mut end = begin;
-        for (input, row) in E::INPUTS.into_iter().enumerate() {
-            let variable = &E::DESCRIPTION.variables[row];
-            end[input] = end_of_ramp(variable, begin[input], slopes[input], duration)?;
-        }
+        let end = self.inputs_after(begin, duration)?;
         let (mut motion, measured) = self.sensor.move_through(
             self.motion(),
             duration,
@@ -218,6 +226,20 @@ impl<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U: usize>
             && self.motion().state.iter().chain(&self.slopes).all(|number| number.is_finite())
             && self.sensor.belongs_to(self.values[E::SENSOR.sample_time])
     }
+}
+
+#[cold]
+fn diverged<E, const N: usize, const X: usize, const U: usize>(
+    components: impl IntoIterator<Item = (usize, f64)>,
+) -> UnitError
+where
+    E: PlantEquations<N, X, U>,
+{
+    let is_finite = |(_, value): &(usize, f64)| value.is_finite();
+    let (row, value) =
+        components.into_iter().find(|component| !is_finite(component)).unwrap_or((0, f64::NAN));
+    let variable = &E::DESCRIPTION.variables[row];
+    UnitError::Diverged { name: variable.name, value, unit: variable.unit() }
 }
 
 #[cold]
