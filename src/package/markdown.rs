@@ -1,17 +1,27 @@
 //! Markdown as GitHub shows it: text and tables.
 
-/// Text in which words for which `is_name` holds are set as code and no character is taken for markup.
-pub fn text(text: &str, is_name: impl Fn(&str) -> bool) -> String {
-    text.split_inclusive(' ').map(|word| set_word(word, &is_name)).collect()
+/// Text in which no character is taken for markup, and what `is_code` holds for is set as code: words, and settings such as
+/// `map = exact`.
+pub fn text(text: &str, is_code: impl Fn(&str) -> bool) -> String {
+    let words: Vec<&str> = text.split_inclusive(' ').collect();
+    let mut result = String::new();
+    let mut place = 0;
+    while place < words.len() {
+        let spans =
+            [3, 1].into_iter().filter_map(|count| Some((count, words.get(place..place + count)?.concat())));
+        let found = spans.filter_map(|(count, span)| Some((count, with_code(&span, &is_code)?))).next();
+        let (count, set) = found.unwrap_or_else(|| (1, escaped(words[place])));
+        result += &set;
+        place += count;
+    }
+    result
 }
 
-fn set_word(word: &str, is_name: &impl Fn(&str) -> bool) -> String {
-    let core = word.trim_start_matches('(').trim_end_matches([' ', ',', ';', ':', '.', ')']);
-    if !is_name(core) {
-        return escaped(word);
-    }
-    let (before, after) = word.split_once(core).unwrap_or_default();
-    format!("{}{}{}", escaped(before), code(core), escaped(after))
+/// A span of text as code between its punctuation, if it is code.
+fn with_code(span: &str, is_code: &impl Fn(&str) -> bool) -> Option<String> {
+    let core = span.trim_start_matches('(').trim_end_matches([' ', ',', ';', ':', '.', ')']);
+    let (before, after) = span.split_once(core)?;
+    is_code(core).then(|| format!("{}{}{}", escaped(before), code(core), escaped(after)))
 }
 
 fn escaped(text: &str) -> String {
@@ -52,10 +62,12 @@ mod tests {
 
     #[test]
     fn names_are_code_and_markup_is_plain_text() {
-        let is_name = |word: &str| ["sensor.seed", "filter[1]"].contains(&word);
-        assert_eq!(text("a (sensor.seed), filter[1].", is_name), "a (`sensor.seed`), `filter[1]`.");
-        assert_eq!(text("a * b < `c` \\", is_name), "a \\* b \\< \\`c\\` \\\\");
-        assert_eq!(text("sensor.seeds", is_name), "sensor.seeds");
+        let set = |words| text(words, |words| ["sensor.seed", "filter[1]", "map = exact"].contains(&words));
+        assert_eq!(set("a (sensor.seed), filter[1]."), "a (`sensor.seed`), `filter[1]`.");
+        assert_eq!(set("with map = exact, map = exactly"), "with `map = exact`, map = exactly");
+        assert_eq!(set("a * b < `c` \\"), "a \\* b \\< \\`c\\` \\\\");
+        assert_eq!(set("sensor.seeds"), "sensor.seeds");
+        assert_eq!(set(""), "");
     }
 
     #[test]

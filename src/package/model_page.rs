@@ -18,8 +18,8 @@ pub fn model_page(description: &Description) -> String {
     let head = ["Variable", "Kind", "Unit", "Start", "Range", "Description"];
     let variables = table(head, description.variables.iter().map(variable_row));
     format!(
-        "# {name}\n\n**{}.**\n\n{paragraphs}Suggested communication step: {step_size} s; suggested end of a simulation: \
-         {stop_time} s. Interfaces: {}. Packages: {}.\n\n{}## Variables\n\n{variables}{}{ORIGIN}",
+        "# {name}\n\n**{}.**\n\n{paragraphs}- Interfaces: {}\n- Packages: {}\n- Suggested communication step: {step_size} s\n\
+         - Suggested end of a simulation: {stop_time} s\n\n{}## Variables\n\n{variables}{}{ORIGIN}",
         text(summary),
         interfaces(description),
         packages(description),
@@ -130,19 +130,39 @@ fn link(description: &Description) -> String {
     format!("[{0}]({0}.md)", description.name)
 }
 
-/// Words of the tables, with the names of variables and of enumerations' items as code if they cannot be taken for
-/// words of English.
+/// Words of the tables, with what can only be the name of a variable or of an enumeration's item as code, and with
+/// variables and the values that they are to have.
 fn text(words: &str) -> String {
-    markdown::text(words, |word| word.contains(['.', '_']) && is_name(word))
+    markdown::text(words, |words| match words.split_once(" = ") {
+        Some((name, value)) => is_setting(name, value),
+        None => is_identifier(words) && is_name(words),
+    })
+}
+
+/// Whether it cannot be taken for a word of English or a symbol.
+fn is_identifier(word: &str) -> bool {
+    word.contains(['.', '_'])
+}
+
+fn variables() -> impl Iterator<Item = &'static Variable> {
+    UNITS.iter().flat_map(|unit| unit.description.variables)
+}
+
+fn has_item(variable: &Variable, name: &str) -> bool {
+    match variable.kind {
+        Kind::Enumeration(enumeration) => enumeration.items.iter().any(|(item, _)| *item == name),
+        _ => false,
+    }
 }
 
 fn is_name(word: &str) -> bool {
-    let variables = || UNITS.iter().flat_map(|unit| unit.description.variables);
-    let has_item = |variable: &Variable| match variable.kind {
-        Kind::Enumeration(enumeration) => enumeration.items.iter().any(|(item, _)| *item == word),
-        _ => false,
-    };
-    variables().any(|variable| variable.name == word || has_item(variable))
+    variables().any(|variable| variable.name == word || has_item(variable, word))
+}
+
+fn is_setting(name: &str, value: &str) -> bool {
+    let is_number = is_identifier(name) && value.parse::<f64>().is_ok();
+    let mut named = variables().filter(|variable| variable.name == name && !variable.is_calculated());
+    named.any(|variable| is_number || has_item(variable, value))
 }
 
 #[cfg(test)]
@@ -157,7 +177,7 @@ mod tests {
             "| `observer.kind` | parameter | [BearingObserver](#bearingobserver) | newton |",
             "### BearingObserver\n",
             "| [MagneticBearingPlant](MagneticBearingPlant.md) | `voltage_measured` | `MagneticBearingController` | `voltage_applied` |",
-            "choose `observer.voltage_source` = applied",
+            "choose `observer.voltage_source = applied`",
         ] {
             assert!(page.contains(part), "{part} is missing in:\n{page}");
         }
