@@ -4,11 +4,11 @@ use std::error::Error;
 use std::path::PathBuf;
 
 use clap::Args;
-use maglev_fmu::package::{self, Readme};
+use maglev_fmu::package;
 
-use super::output::{report, say};
+use super::output::report;
 
-/// Write the model descriptions, the README's tables and the list of linked crates from the sources
+/// Write the model descriptions, the pages in docs/models and the list of linked crates from the sources
 #[derive(Debug, Args)]
 pub struct Describe {
     /// Root of the repository
@@ -18,17 +18,10 @@ pub struct Describe {
 
 impl Describe {
     pub fn run(&self) -> Result<(), Box<dyn Error>> {
-        let (written, readme) = package::describe(&self.root)?;
-        written.iter().try_for_each(report)?;
+        package::describe(&self.root)?.iter().try_for_each(report)?;
         if self.root.join("Cargo.toml").exists() {
             report(&package::describe_third_party(&self.root)?)?;
         }
-        Ok(match readme {
-            Readme::Written(file) => report(&file),
-            Readme::Missing(path) => say(format_args!("no {}, so no tables there", path.display())),
-            Readme::NoMarkers(path) => {
-                say(format_args!("{} left alone: it lacks the markers for tables", path.display()))
-            }
-        }?)
+        Ok(())
     }
 }

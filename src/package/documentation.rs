@@ -83,10 +83,8 @@ fn loops(description: &Description) -> String {
     for plug in Plug::all_of(description) {
         let system = plug.system;
         let (plant, controller) = (system.plant.description.name, system.controller.description.name);
-        let sensing = system.sensing.iter().map(|wire| (plant, controller, wire));
-        let wires = sensing.chain(system.actuation.iter().map(|wire| (controller, plant, wire)));
-        let rows = lines(wires.map(|(source, target, (output, input))| {
-            row([source.into(), code(output), target.into(), code(input)])
+        let rows = lines(system.wires().map(|wire| {
+            row([wire.source.name.into(), code(wire.output), wire.target.name.into(), code(wire.input)])
         }));
         text += &format!(
             "<h2>Loop</h2>\n<p><img src=\"{}\" alt=\"{controller} and {plant} in a loop\"></p>\n\

@@ -1,21 +1,23 @@
-//! From a unit's variable table to a functional mock-up unit: model description, documentation, icon, archive; and from
-//! the table of systems to system structure packages.
+//! From a unit's variable table to a functional mock-up unit: model description, documentation, icon, archive; from the
+//! table of systems to system structure packages; and from both to the pages in `docs/models`.
 //!
 //! Everything here is written from the tables that the shared library is built from, never by loading the library,
 //! so units for another platform can be packaged as well.
 
 mod archive;
 pub mod capabilities;
-mod checked_in;
 mod contents;
 mod documentation;
 mod error;
+mod generated_files;
 mod generation_time;
 mod icon;
 mod library;
 mod licenses;
 mod loop_diagram;
+mod markdown;
 mod model_description;
+mod model_page;
 pub mod parameter_file;
 mod platform;
 mod plug;
@@ -33,9 +35,9 @@ use std::path::{Path, PathBuf};
 pub use crate::fmi::{FmiVersion, Form};
 pub use archive::archive;
 pub use capabilities::Capabilities;
-pub use checked_in::{Readme, checked_in_files, describe, describe_third_party, readme_with_tables};
 pub use contents::{Entry, contents};
 pub use error::PackageError;
+pub use generated_files::{describe, describe_third_party, generated_files};
 pub use generation_time::GenerationTime;
 pub use icon::{icon_png, icon_svg};
 pub use library::Library;

@@ -27,6 +27,15 @@ pub struct System {
     pub remark: &'static str,
 }
 
+/// An output and the input of the other unit that takes it.
+#[derive(Clone, Copy, Debug)]
+pub struct Wire {
+    pub source: &'static Description,
+    pub output: &'static str,
+    pub target: &'static Description,
+    pub input: &'static str,
+}
+
 /// A start value in a package of a system.
 #[derive(Clone, Copy, Debug)]
 pub enum Start {
@@ -116,6 +125,15 @@ impl System {
     /// The system called `name`.
     pub fn find(name: &str) -> Option<&'static Self> {
         SYSTEMS.iter().copied().find(|system| system.name == name)
+    }
+
+    /// All wires: what the controller reads, then what acts on the plant.
+    pub fn wires(&self) -> impl Iterator<Item = Wire> {
+        let (plant, controller) = (self.plant.description, self.controller.description);
+        let sensing = self.sensing.iter().map(move |wire| (plant, controller, wire));
+        let actuation = self.actuation.iter().map(move |wire| (controller, plant, wire));
+        let wires = sensing.chain(actuation);
+        wires.map(|(source, target, &(output, input))| Wire { source, output, target, input })
     }
 
     /// Communication step that suits both units \[s\].

@@ -1,10 +1,10 @@
-//! The files that are written from the variable tables are up to date.
+//! The files that are generated from the variable tables are up to date.
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use maglev_fmu::package::{Form, checked_in_files, describe, readme_with_tables};
+use maglev_fmu::package::{Form, describe, generated_files};
 
 const RENEW: &str = "renew it with `cargo run -- describe`";
 
@@ -13,8 +13,8 @@ fn root() -> &'static Path {
 }
 
 #[test]
-fn model_descriptions_are_up_to_date() {
-    for (path, text) in checked_in_files() {
+fn generated_files_are_up_to_date() {
+    for (path, text) in generated_files() {
         let checked_in = fs::read_to_string(root().join(&path)).unwrap_or_default();
         // A checkout may have changed the ends of lines.
         assert!(
@@ -26,31 +26,23 @@ fn model_descriptions_are_up_to_date() {
 }
 
 #[test]
-fn no_model_description_is_left_over() {
-    let expected: BTreeSet<PathBuf> =
-        checked_in_files().into_iter().map(|(path, _)| root().join(path)).collect();
-    for form in Form::ALL {
-        for file in fs::read_dir(root().join("modelDescription").join(form.directory())).unwrap() {
-            let path = file.unwrap().path();
-            assert!(expected.contains(&path), "{} describes no unit: delete it", path.display());
+fn no_generated_file_is_left_over() {
+    let expected: BTreeSet<PathBuf> = generated_files().into_iter().map(|(path, _)| path).collect();
+    let folders: BTreeSet<&Path> = expected.iter().filter_map(|path| path.parent()).collect();
+    assert_eq!(folders.len(), Form::ALL.len() + 1, "{folders:?}");
+    for folder in folders {
+        for file in fs::read_dir(root().join(folder)).unwrap() {
+            let path = folder.join(file.unwrap().file_name());
+            assert!(expected.contains(&path), "{} describes no model: delete it", path.display());
         }
-    }
-}
-
-#[test]
-fn readme_tables_are_up_to_date() {
-    let Ok(readme) = fs::read_to_string(root().join("README.md")) else { return };
-    let readme = readme.replace("\r\n", "\n");
-    if let Some(renewed) = readme_with_tables(&readme) {
-        assert!(renewed == readme, "README.md has old tables: {RENEW}");
     }
 }
 
 #[test]
 fn describe_writes_what_is_checked_in() {
     let directory = tempfile::tempdir().unwrap();
-    let (written, _) = describe(directory.path()).unwrap();
-    let expected = checked_in_files();
+    let written = describe(directory.path()).unwrap();
+    let expected = generated_files();
     assert_eq!(written.len(), expected.len());
     for (path, text) in expected {
         assert_eq!(fs::read_to_string(directory.path().join(path)).unwrap(), text);

@@ -4,6 +4,7 @@ mod archive;
 mod built_packages;
 mod command_line;
 mod descriptions;
+mod documents;
 mod library;
 mod library_file;
 mod model_description;

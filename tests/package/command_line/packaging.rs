@@ -85,17 +85,13 @@ fn a_program_is_no_library() {
 #[test]
 fn describe_writes_below_the_given_root() {
     let directory = tempfile::tempdir().unwrap();
-    fs::write(
-        directory.path().join("README.md"),
-        "# Title\n<!-- variables:begin -->\n<!-- variables:end -->\n",
-    )
-    .unwrap();
     let output = maglev_fmu(directory.path(), &["describe"], None);
     assert!(output.status.success(), "{}", text(&output.stderr));
     for version in ["fmi2", "fmi3"] {
         let path = directory.path().join("modelDescription").join(version).join("MagneticBearingPlant.xml");
         assert!(path.is_file());
     }
-    let readme = fs::read_to_string(directory.path().join("README.md")).unwrap();
-    assert!(readme.contains("### MagneticBearingController"), "{readme}");
+    let page = directory.path().join("docs").join("models").join("MagneticBearingController.md");
+    let page = fs::read_to_string(page).unwrap();
+    assert!(page.starts_with("# MagneticBearingController\n"), "{page}");
 }
