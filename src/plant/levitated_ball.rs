@@ -97,10 +97,7 @@ impl LevitatedBall {
         duration: f64,
     ) {
         let driven = DrivenBall::new(self, lower_stop, drive);
-        let mut components = [state.position, state.velocity, state.flux];
-        advance(&driven, &mut components, contact, duration, self.longest_substep(lower_stop));
-        let [position, velocity, flux] = components;
-        *state = State { position, velocity, flux };
+        driven.advance(state, contact, duration, self.longest_substep(lower_stop));
     }
 
     /// As [`Self::advance`] with a drive that starts from `drive` and moves with `slope` \[V/s, N/s\].
@@ -146,10 +143,7 @@ pub struct DrivenBall<S = f64> {
     gap: S,
     lower_stop: S,
     voltage: S,
-    /// R / k
-    damping: S,
-    /// 1 / (2 k m)
-    lift: S,
+    constants: BallConstants<S>,
     /// -g + F / m
     constant_acceleration: S,
 }
@@ -157,13 +151,53 @@ pub struct DrivenBall<S = f64> {
 impl<S: Scalar> DrivenBall<S> {
     #[inline]
     pub fn new(ball: &LevitatedBall<S>, lower_stop: S, drive: Drive<S>) -> Self {
+        Self::with(BallConstants::of(ball), ball, lower_stop, drive)
+    }
+
+    /// As [`Self::new`] with the constants of the same ball.
+    #[inline]
+    pub fn with(
+        constants: BallConstants<S>,
+        ball: &LevitatedBall<S>,
+        lower_stop: S,
+        drive: Drive<S>,
+    ) -> Self {
         Self {
             gap: ball.gap,
             lower_stop,
             voltage: drive.voltage,
+            constants,
+            constant_acceleration: drive.force / ball.mass - ball.gravity,
+        }
+    }
+}
+
+impl DrivenBall {
+    /// Lets `duration` \[s\] pass in steps of at most `longest_substep` \[s\].
+    #[inline]
+    pub fn advance(&self, state: &mut State, contact: &mut Contact, duration: f64, longest_substep: f64) {
+        let mut components = [state.position, state.velocity, state.flux];
+        advance(self, &mut components, contact, duration, longest_substep);
+        let [position, velocity, flux] = components;
+        *state = State { position, velocity, flux };
+    }
+}
+
+/// What the equations of a ball divide by, once.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BallConstants<S = f64> {
+    /// R / k
+    damping: S,
+    /// 1 / (2 k m)
+    lift: S,
+}
+
+impl<S: Scalar> BallConstants<S> {
+    #[inline]
+    pub fn of(ball: &LevitatedBall<S>) -> Self {
+        Self {
             damping: ball.resistance / ball.inductance_constant,
             lift: S::from(0.5) / (ball.inductance_constant * ball.mass),
-            constant_acceleration: drive.force / ball.mass - ball.gravity,
         }
     }
 }
@@ -173,8 +207,8 @@ impl<S: Scalar> Guided<3, S> for DrivenBall<S> {
     fn rate(&self, &[position, velocity, flux]: &[S; 3]) -> [S; 3] {
         [
             velocity,
-            self.lift * flux * flux + self.constant_acceleration,
-            self.voltage - self.damping * (self.gap - position) * flux,
+            self.constants.lift * flux * flux + self.constant_acceleration,
+            self.voltage - self.constants.damping * (self.gap - position) * flux,
         ]
     }
 

@@ -14,7 +14,8 @@ impl<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U: usize>
     #[inline]
     fn evaluate(&mut self) {
         let is_read = self.sensor.is_read(self.solver);
-        follow::<E, f64, N, X, U>(&mut self.values, self.mode, self.solver, is_read);
+        let evaluate = |values: &mut [f64; N]| self.equations.evaluate_at_step(values, self.mode);
+        follow::<E, f64, N, X, U>(&mut self.values, evaluate, self.solver, is_read);
     }
 
     fn set_solver(&mut self, solver: Solver) -> bool {
@@ -49,7 +50,12 @@ impl<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U: usize>
             }
             Stage::Running => {
                 E::calculate_parameters(&mut values);
-                follow::<E, Dual, N, X, U>(&mut values, self.mode, self.solver, is_read);
+                follow::<E, Dual, N, X, U>(
+                    &mut values,
+                    |values| E::evaluate(values, self.mode),
+                    self.solver,
+                    is_read,
+                );
             }
         }
         Tangents::of(values.iter().map(|value| value.tangent))
@@ -83,7 +89,7 @@ pub(super) fn initialise<E, S: Scalar, const N: usize, const X: usize, const U: 
         values[row] = value;
     }
     E::report_acting_voltage(values, S::from(0.0));
-    follow::<E, S, N, X, U>(values, mode, solver, is_read);
+    follow::<E, S, N, X, U>(values, |values| E::evaluate(values, mode), solver, is_read);
     if is_read {
         let rows = E::SENSOR;
         let reading = noisy(E::measured(values, &state), values[rows.noise], sample);

@@ -39,7 +39,11 @@ pub struct ProcessNoise {
 ///
 /// What is generic over [`Scalar`] is written once for values, derivatives and dependencies. `values` are those of the
 /// table's rows; an equation reads what is given and writes what follows.
-pub trait PlantEquations<const N: usize, const X: usize, const U: usize>: Clone + Send + 'static {
+///
+/// An instance keeps what follows from fixed parameters and is needed at each step.
+pub trait PlantEquations<const N: usize, const X: usize, const U: usize>:
+    Clone + PartialEq + Send + Serialize + DeserializeOwned + 'static
+{
     /// In which of several ways the equations go on from here; the default one is that of free motion.
     type Mode: Copy + Debug + Default + PartialEq + Send + Serialize + DeserializeOwned + 'static;
 
@@ -57,6 +61,9 @@ pub trait PlantEquations<const N: usize, const X: usize, const U: usize>: Clone 
     const SENSOR: SensorRows;
 
     const PROCESS_NOISE: Option<ProcessNoise> = None;
+
+    /// With these parameters.
+    fn new(values: &[f64; N]) -> Self;
 
     /// Parameters that follow from others.
     fn calculate_parameters<S: Scalar>(values: &mut [S; N]) {
@@ -82,6 +89,12 @@ pub trait PlantEquations<const N: usize, const X: usize, const U: usize>: Clone 
 
     /// Derivatives, event indicators and all else that follows at one instant from states, inputs and parameters.
     fn evaluate<S: Scalar>(values: &mut [S; N], mode: Self::Mode);
+
+    /// As [`Self::evaluate`], with what the instance keeps.
+    #[inline]
+    fn evaluate_at_step(&self, values: &mut [f64; N], mode: Self::Mode) {
+        Self::evaluate(values, mode);
+    }
 
     /// The voltage that acts \[V\] when the input is `voltage`.
     fn acting_voltage<S: Scalar>(values: &[S; N], voltage: S) -> S {
@@ -109,6 +122,7 @@ pub trait PlantEquations<const N: usize, const X: usize, const U: usize>: Clone 
 
     /// Lets `duration` \[s\] pass with held inputs.
     fn advance(
+        &self,
         values: &[f64; N],
         motion: Motion<Self::Mode, X>,
         inputs: [f64; U],
@@ -117,6 +131,7 @@ pub trait PlantEquations<const N: usize, const X: usize, const U: usize>: Clone 
 
     /// As [`Self::advance`] with inputs that begin with `inputs` and have `slopes` \[1/s of their units\].
     fn advance_under_ramp(
+        &self,
         values: &[f64; N],
         motion: Motion<Self::Mode, X>,
         inputs: [f64; U],
@@ -149,8 +164,7 @@ pub trait PlantEquations<const N: usize, const X: usize, const U: usize>: Clone 
     }
 
     /// What computing this plant costs, beside its sensor.
-    fn load(values: &[f64; N]) -> Load {
-        let _ = values;
+    fn load(&self) -> Load {
         Load::NONE
     }
 

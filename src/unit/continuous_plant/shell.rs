@@ -21,6 +21,7 @@ const PROCESS_STREAM: u64 = 2;
 pub struct ContinuousPlant<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U: usize> {
     #[serde(with = "BigArray")]
     pub(super) values: [f64; N],
+    pub(super) equations: E,
     pub(super) mode: E::Mode,
     /// Slopes of the inputs during steps \[1/s of their units\].
     #[serde(with = "BigArray")]
@@ -33,8 +34,10 @@ pub struct ContinuousPlant<E: PlantEquations<N, X, U>, const N: usize, const X: 
 impl<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U: usize> ContinuousPlant<E, N, X, U> {
     /// The plant with the start values of its table.
     pub fn new() -> Self {
+        let values = from_fn(|row| E::DESCRIPTION.variables[row].start);
         Self {
-            values: from_fn(|row| E::DESCRIPTION.variables[row].start),
+            equations: E::new(&values),
+            values,
             mode: E::Mode::default(),
             slopes: [0.0; U],
             solver: Solver::default(),
@@ -77,9 +80,9 @@ impl<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U: usize>
         duration: f64,
     ) -> Result<Motion<E::Mode, X>, UnitError> {
         let motion = if self.slopes == [0.0; U] {
-            E::advance(&self.values, motion, inputs, duration)
+            self.equations.advance(&self.values, motion, inputs, duration)
         } else {
-            E::advance_under_ramp(&self.values, motion, inputs, self.slopes, duration)
+            self.equations.advance_under_ramp(&self.values, motion, inputs, self.slopes, duration)
         };
         self.check_finite(&motion.state)?;
         Ok(motion)
@@ -119,18 +122,18 @@ impl<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U: usize>
     }
 }
 
-/// All that follows at one instant from the rows of states, inputs and parameters. The outputs of the voltage and of a
-/// sensor that `is_read` tell of the past, unless an importer solves the plant.
+/// All that follows at one instant from the rows of states, inputs and parameters, and that `evaluate` does not compute. The
+/// outputs of the voltage and of a sensor that `is_read` tell of the past, unless an importer solves the plant.
 #[inline]
 pub(super) fn follow<E, S: Scalar, const N: usize, const X: usize, const U: usize>(
     values: &mut [S; N],
-    mode: E::Mode,
+    evaluate: impl FnOnce(&mut [S; N]),
     solver: Solver,
     is_read: bool,
 ) where
     E: PlantEquations<N, X, U>,
 {
-    E::evaluate(values, mode);
+    evaluate(values);
     if solver == Solver::Importer {
         let voltage = E::acting_voltage(values, values[E::INPUTS[0]]);
         E::report_acting_voltage(values, voltage);
@@ -167,6 +170,7 @@ impl<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U: usize>
         let values = &mut self.values;
         values[TIME] = start_time;
         E::calculate_parameters(values);
+        self.equations = E::new(values);
         self.mode = E::initial_mode(values, &E::initial_state(values));
         let is_read = self.sensor.is_read(self.solver);
         let is_noisy = is_read && values[rows.noise] != 0.0;
@@ -181,7 +185,7 @@ impl<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U: usize>
     }
 
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError> {
-        require_affordable(duration, [E::load(&self.values), self.sensor.load()])?;
+        require_affordable(duration, [self.equations.load(), self.sensor.load()])?;
         let (begin, slopes) = (self.inputs(), self.slopes);
         let end = self.inputs_after(begin, duration)?;
         let (mut motion, measured) = self.sensor.move_through(
@@ -223,6 +227,7 @@ impl<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U: usize>
         let mut expected = self.values;
         E::calculate_parameters(&mut expected);
         expected.map(f64::to_bits) == self.values.map(f64::to_bits)
+            && self.equations == E::new(&self.values)
             && self.motion().state.iter().chain(&self.slopes).all(|number| number.is_finite())
             && self.sensor.belongs_to(self.values[E::SENSOR.sample_time])
     }

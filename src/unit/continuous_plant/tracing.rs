@@ -33,7 +33,12 @@ impl<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U: usize>
                     if is_state { Some(Variation::Continuous) } else { variation(variable) }
                 });
                 E::calculate_parameters(&mut values);
-                follow::<E, Traced, N, X, U>(&mut values, *mode, solver, is_read);
+                follow::<E, Traced, N, X, U>(
+                    &mut values,
+                    |values| E::evaluate(values, *mode),
+                    solver,
+                    is_read,
+                );
                 runs.push(values);
             }
         }
@@ -79,8 +84,8 @@ impl<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U: usize>
             forced[row] = value;
         }
         let mut free = forced;
-        follow::<E, f64, N, X, U>(&mut forced, mode, solver, true);
-        follow::<E, f64, N, X, U>(&mut free, E::Mode::default(), solver, true);
+        follow::<E, f64, N, X, U>(&mut forced, |values| E::evaluate(values, mode), solver, true);
+        follow::<E, f64, N, X, U>(&mut free, |values| E::evaluate(values, E::Mode::default()), solver, true);
         forced[row] != free[row]
     }
 

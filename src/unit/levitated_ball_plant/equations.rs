@@ -2,7 +2,7 @@
 
 use super::table::*;
 use crate::plant::end_stops::{Contact, rate_in_contact, settled, transition};
-use crate::plant::levitated_ball::{Drive, DrivenBall, LevitatedBall, State};
+use crate::plant::levitated_ball::{BallConstants, Drive, DrivenBall, LevitatedBall, State};
 use crate::scalar::Scalar;
 use crate::unit::Description;
 use crate::unit::continuous_plant::{Motion, PlantEquations, SensorRows};
@@ -10,13 +10,27 @@ use crate::unit::end_stop_events::indicators;
 #[cfg(feature = "tools")]
 use crate::unit::end_stop_events::{cause_of_contact, imposed};
 use crate::unit::work::Load;
+use serde::{Deserialize, Serialize};
 
 /// What a step of the integrator costs \[s\], see [`crate::unit::work`].
 const COST_OF_SUBSTEP: f64 = 250e-9;
 
+/// Flux \[Wb\] below which the acceleration is finite, whatever mass and coil are within their ranges.
+const FINITE_FLUX: f64 = 1e140;
+
 /// Equations of [`crate::plant::levitated_ball`].
-#[derive(Clone)]
-pub struct LevitatedBallEquations;
+#[derive(Clone, PartialEq, Serialize, Deserialize)]
+pub struct LevitatedBallEquations {
+    constants: BallConstants,
+    /// \[s\]
+    longest_substep: f64,
+}
+
+impl LevitatedBallEquations {
+    fn driven(&self, values: &[f64; COUNT], [voltage, force]: [f64; 2]) -> DrivenBall {
+        DrivenBall::with(self.constants, &ball(values), values[LOWER_STOP], Drive { voltage, force })
+    }
+}
 
 fn ball<S: Scalar>(values: &[S; COUNT]) -> LevitatedBall<S> {
     LevitatedBall {
@@ -31,6 +45,22 @@ fn ball<S: Scalar>(values: &[S; COUNT]) -> LevitatedBall<S> {
 /// The ball under these inputs.
 fn driven<S: Scalar>(values: &[S; COUNT], [voltage, force]: [S; 2]) -> DrivenBall<S> {
     DrivenBall::new(&ball(values), values[LOWER_STOP], Drive { voltage, force })
+}
+
+/// What follows at one instant for the ball under its present inputs.
+#[inline]
+fn write_what_follows<S: Scalar>(values: &mut [S; COUNT], driven: &DrivenBall<S>, contact: Contact) {
+    let state = LevitatedBallEquations::STATES.map(|row| values[row]);
+    let [position_rate, acceleration, flux_rate] = rate_in_contact(driven, &state, contact);
+    let [at_lower_stop, at_magnet] = indicators(driven, &state, contact);
+    let ([position, _, flux], ball) = (state, ball(values));
+    values[POSITION_DERIVATIVE] = position_rate;
+    values[ACCELERATION_LOCAL] = acceleration;
+    values[FLUX_DERIVATIVE] = flux_rate;
+    values[LOWER_STOP_INDICATOR] = at_lower_stop;
+    values[MAGNET_INDICATOR] = at_magnet;
+    values[CURRENT_OUTPUT] = ball.current(position, flux);
+    values[MAGNETIC_FORCE] = ball.magnetic_force(flux);
 }
 
 fn state([position, velocity, flux]: [f64; 3]) -> State {
@@ -51,6 +81,12 @@ impl PlantEquations<COUNT, 3, 2> for LevitatedBallEquations {
         sample_time: SENSOR_SAMPLE_TIME,
         seed: SENSOR_SEED,
     };
+
+    fn new(values: &[f64; COUNT]) -> Self {
+        let ball = ball(values);
+        let longest_substep = ball.longest_substep(values[LOWER_STOP]);
+        Self { constants: BallConstants::of(&ball), longest_substep }
+    }
 
     fn initial_state<S: Scalar>(values: &[S; COUNT]) -> [S; 3] {
         let given = [values[INITIAL_POSITION], values[INITIAL_VELOCITY]];
@@ -76,18 +112,14 @@ impl PlantEquations<COUNT, 3, 2> for LevitatedBallEquations {
 
     #[inline]
     fn evaluate<S: Scalar>(values: &mut [S; COUNT], contact: Contact) {
-        let state = Self::STATES.map(|row| values[row]);
         let driven = driven(values, Self::INPUTS.map(|row| values[row]));
-        let [position_rate, acceleration, flux_rate] = rate_in_contact(&driven, &state, contact);
-        let [at_lower_stop, at_magnet] = indicators(&driven, &state, contact);
-        let ([position, _, flux], ball) = (state, ball(values));
-        values[POSITION_DERIVATIVE] = position_rate;
-        values[ACCELERATION_LOCAL] = acceleration;
-        values[FLUX_DERIVATIVE] = flux_rate;
-        values[LOWER_STOP_INDICATOR] = at_lower_stop;
-        values[MAGNET_INDICATOR] = at_magnet;
-        values[CURRENT_OUTPUT] = ball.current(position, flux);
-        values[MAGNETIC_FORCE] = ball.magnetic_force(flux);
+        write_what_follows(values, &driven, contact);
+    }
+
+    #[inline]
+    fn evaluate_at_step(&self, values: &mut [f64; COUNT], contact: Contact) {
+        let driven = self.driven(values, Self::INPUTS.map(|row| values[row]));
+        write_what_follows(values, &driven, contact);
     }
 
     fn report_acting_voltage<S: Scalar>(values: &mut [S; COUNT], voltage: S) {
@@ -100,18 +132,19 @@ impl PlantEquations<COUNT, 3, 2> for LevitatedBallEquations {
 
     #[inline]
     fn advance(
+        &self,
         values: &[f64; COUNT],
         motion: Motion<Contact, 3>,
-        [voltage, force]: [f64; 2],
+        inputs: [f64; 2],
         duration: f64,
     ) -> Motion<Contact, 3> {
         let (mut state, mut contact) = (state(motion.state), motion.mode);
-        let drive = Drive { voltage, force };
-        ball(values).advance(values[LOWER_STOP], &mut state, &mut contact, drive, duration);
+        self.driven(values, inputs).advance(&mut state, &mut contact, duration, self.longest_substep);
         Motion { state: [state.position, state.velocity, state.flux], mode: contact }
     }
 
     fn advance_under_ramp(
+        &self,
         values: &[f64; COUNT],
         motion: Motion<Contact, 3>,
         [voltage, force]: [f64; 2],
@@ -144,12 +177,15 @@ impl PlantEquations<COUNT, 3, 2> for LevitatedBallEquations {
     }
 
     #[inline]
-    fn load(values: &[f64; COUNT]) -> Load {
-        Load { cost: COST_OF_SUBSTEP, interval: ball(values).longest_substep(values[LOWER_STOP]) }
+    fn load(&self) -> Load {
+        Load { cost: COST_OF_SUBSTEP, interval: self.longest_substep }
     }
 
     #[inline]
     fn also_finite(values: &[f64; COUNT], &[_, _, flux]: &[f64; 3]) -> Option<(usize, f64)> {
+        if flux.abs() < FINITE_FLUX {
+            return None;
+        }
         let ball = ball(values);
         Some((ACCELERATION_LOCAL, ball.magnetic_force(flux) / ball.mass))
     }

@@ -11,12 +11,13 @@ use crate::unit::end_stop_events::indicators;
 #[cfg(feature = "tools")]
 use crate::unit::end_stop_events::{cause_of_contact, imposed};
 use crate::unit::work::Load;
+use serde::{Deserialize, Serialize};
 
 /// What a step of the integrator costs \[s\], see [`crate::unit::work`].
 const COST_OF_SUBSTEP: f64 = 200e-9;
 
 /// Equations of [`crate::plant::maglev_rig`].
-#[derive(Clone)]
+#[derive(Clone, PartialEq, Serialize, Deserialize)]
 pub struct MaglevRigEquations;
 
 /// The ball under a voltage \[V\] that acts and a force \[N\].
@@ -68,6 +69,10 @@ impl PlantEquations<COUNT, 2, 2> for MaglevRigEquations {
         sample_time: SENSOR_SAMPLE_TIME,
         seed: SENSOR_SEED,
     };
+
+    fn new(_: &[f64; COUNT]) -> Self {
+        Self
+    }
 
     fn initial_state<S: Scalar>(values: &[S; COUNT]) -> [S; 2] {
         let given = [values[INITIAL_POSITION], values[INITIAL_VELOCITY]];
@@ -132,6 +137,7 @@ impl PlantEquations<COUNT, 2, 2> for MaglevRigEquations {
 
     #[inline]
     fn advance(
+        &self,
         values: &[f64; COUNT],
         begin: Motion<Contact, 2>,
         inputs: [f64; 2],
@@ -141,6 +147,7 @@ impl PlantEquations<COUNT, 2, 2> for MaglevRigEquations {
     }
 
     fn advance_under_ramp(
+        &self,
         values: &[f64; COUNT],
         begin: Motion<Contact, 2>,
         inputs: [f64; 2],
@@ -168,7 +175,7 @@ impl PlantEquations<COUNT, 2, 2> for MaglevRigEquations {
         })
     }
 
-    fn load(_: &[f64; COUNT]) -> Load {
+    fn load(&self) -> Load {
         Load { cost: COST_OF_SUBSTEP, interval: LONGEST_SUBSTEP }
     }
 }

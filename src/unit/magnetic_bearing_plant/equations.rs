@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 const HYSTERESIS: f64 = 1e-9;
 
 /// Equations of [`crate::plant::magnetic_bearing`].
-#[derive(Clone)]
+#[derive(Clone, PartialEq, Serialize, Deserialize)]
 pub struct MagneticBearingEquations;
 
 /// On which side of zero the flux was at the last event.
@@ -55,6 +55,10 @@ impl PlantEquations<COUNT, 3, 1> for MagneticBearingEquations {
     const PROCESS_NOISE: Option<ProcessNoise> =
         Some(ProcessNoise { state: 2, deviation: PROCESS_FLUX_NOISE });
 
+    fn new(_: &[f64; COUNT]) -> Self {
+        Self
+    }
+
     fn calculate_parameters<S: Scalar>(values: &mut [S; COUNT]) {
         values[EPSILON] = MagneticBearing::with_bias(values[BIAS_FLUX], values[SATURATION_FLUX]).epsilon;
     }
@@ -92,6 +96,7 @@ impl PlantEquations<COUNT, 3, 1> for MagneticBearingEquations {
 
     #[inline]
     fn advance(
+        &self,
         values: &[f64; COUNT],
         begin: Motion<FluxSign, 3>,
         [voltage]: [f64; 1],
@@ -102,6 +107,7 @@ impl PlantEquations<COUNT, 3, 1> for MagneticBearingEquations {
     }
 
     fn advance_under_ramp(
+        &self,
         values: &[f64; COUNT],
         begin: Motion<FluxSign, 3>,
         [voltage]: [f64; 1],
