@@ -65,7 +65,7 @@ def test_build_makes_them_start_values_that_the_library_honours(
     """Nothing is set in the new package; its loop runs bit for bit like the old one with the values set."""
     run_program("build", "--parameters", parameter_file, "--out", tmp_path)
     package = tmp_path / f"fmi{fmi_version}" / f"{RIG_CONTROLLER}.fmu"
-    values = parameter_values(parameter_file, RIG_CONTROLLER)
+    values = parameter_values(parameter_file, open_fmu(fmu_path(fmi_version, RIG_CONTROLLER)))
 
     description = ElementTree.fromstring(ZipFile(package).read("modelDescription.xml"))
     starts = {}
