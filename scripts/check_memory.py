@@ -6,13 +6,13 @@ python scripts/check_memory.py
 
 from __future__ import annotations
 
-import argparse
 import json
 import re
 import subprocess
 import sys
 
 from standard_calls import MEMORY
+from standard_output import Parser
 
 TEST = "random::a_hundred_thousand_random_calls_for_a_memory_checker"
 # What the test program's own tables keep until it ends is "possibly" lost to valgrind, which sees no pointers inside.
@@ -30,7 +30,7 @@ def test_program() -> str:
 
 
 def main() -> None:
-    argparse.ArgumentParser(description=__doc__.split("\n")[0]).parse_args()
+    Parser(description=__doc__.split("\n")[0]).parse_args()
     command = [*VALGRIND, test_program(), "--ignored", "--exact", TEST, "--nocapture", "--test-threads=1"]
     run = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     print(run.stdout)

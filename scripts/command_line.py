@@ -10,11 +10,11 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TextIO
 
 from fmpy.fmi1 import FMICallException
 from matplotlib import pyplot
 from matplotlib.figure import Figure
+from standard_output import Parser, tell
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 
@@ -22,8 +22,6 @@ REPOSITORY = Path(__file__).resolve().parent.parent
 MOST_STEPS = 1_000_000
 # What the seed's variable holds, a 32-bit integer.
 LARGEST_SEED = 2**31 - 1
-# What a shell reports for a program that a closed pipe has ended.
-CLOSED_PIPE = 128 + 13
 
 
 def number(unit: str) -> Callable[[str], float]:
@@ -77,19 +75,9 @@ def image(text: str) -> Path:
     return path
 
 
-class _Parser(argparse.ArgumentParser):
-    """A parser whose help is written or is an error, as everything else is."""
-
-    def print_help(self, file: TextIO | None = None) -> None:
-        if file is None:
-            tell(self.format_help().rstrip("\n"))
-        else:
-            super().print_help(file)
-
-
 def parser(documentation: str) -> argparse.ArgumentParser:
     """Parser with the options that say which units to run."""
-    made = _Parser(
+    made = Parser(
         description=documentation.split("\n")[0], formatter_class=argparse.ArgumentDefaultsHelpFormatter
     )
     made.add_argument("--fmi", type=int, choices=[2, 3], default=3, help="FMI version of the FMUs")
@@ -139,18 +127,6 @@ def explained() -> Iterator[None]:
 def one_line(text: object) -> str:
     """A message in one line, with whatever steers the terminal escaped: messages quote names from files."""
     return "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in str(text))
-
-
-def tell(text: str) -> None:
-    """Print a text; a reader that has closed the pipe ends the script quietly."""
-    try:
-        print(text, flush=True)
-    except OSError as error:
-        # What is left in the buffer must not be written again at the end.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        if isinstance(error, BrokenPipeError):
-            sys.exit(CLOSED_PIPE)
-        sys.exit(f"cannot write to standard output: {error}")
 
 
 def finish(summary: str, figure: Figure, options: argparse.Namespace) -> None:

@@ -7,7 +7,6 @@ python scripts/conformance.py --write
 
 from __future__ import annotations
 
-import argparse
 import faulthandler
 import multiprocessing
 import os
@@ -24,6 +23,7 @@ import standard_calls
 from importers import ANY, CO_SIMULATION, MODEL_EXCHANGE, SCHEDULED_EXECUTION, Task, checkers, in_cpp, systems
 from importers import with_fmpy, with_fmuloader
 from lxml import etree
+from standard_output import Parser
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 PAGE = REPOSITORY / "docs" / "conformance.md"
@@ -210,7 +210,7 @@ NOTES = """\
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser = Parser(description=__doc__.split("\n")[0])
     parser.add_argument("--dist", type=Path, default=REPOSITORY / "dist", help="directory with the packages")
     parser.add_argument("--write", action="store_true", help="write docs/conformance.md")
     options = parser.parse_args()

@@ -24,6 +24,10 @@ LONGEST_PARAMETER_FILE = 1 << 20
 _callbacks: list[object] = []
 
 
+# Types of variables that hold whole numbers.
+WHOLE = ("Integer", "Int32", "Enumeration")
+
+
 class Fmu:
     """One instance of a co-simulation FMU.
 
@@ -103,9 +107,12 @@ class Fmu:
             variable = self._variable(name)
             is_item = variable.type == "Enumeration" and isinstance(value, str)
             number = item_number(variable, value) if is_item else value
+            # JSON does not tell 2 from 2.0.
+            if variable.type in WHOLE and isinstance(number, float) and number.is_integer():
+                number = int(number)
             # Integers of C wrap around, and truth values are integers of Python.
             is_true_or_false = isinstance(value, bool)
-            is_too_large = variable.type in ("Integer", "Int32", "Enumeration") and not _is_32_bit(number)
+            is_too_large = variable.type in WHOLE and not _is_32_bit(number)
             if is_too_large or is_true_or_false != (variable.type == "Boolean"):
                 raise ValueError(f"{name} = {value!r}: expected a value of type {variable.type}")
             try:

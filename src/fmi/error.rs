@@ -12,7 +12,7 @@ pub enum CallError {
     #[error("not allowed in the phase \"{0}\"")]
     WrongPhase(&'static str),
     #[error(
-        "ended by its callback, which has reset the instance or restored a state of it in the phase \"{0}\""
+        "ended by its callback, which has reset the instance or restored a state: it is now in the phase \"{0}\""
     )]
     LeftByCallback(&'static str),
     #[error("the argument {0} is a null pointer")]

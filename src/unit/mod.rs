@@ -158,10 +158,11 @@ pub trait Unit: Persistent + Send {
         None
     }
 
-    /// Whether what the unit has computed from its parameters still belongs to them, once it is initialised. Asked of
-    /// units read from bytes only, which anybody may have written; a unit answers for whatever could make it panic
-    /// or compute without end.
-    fn is_consistent(&self) -> bool {
+    /// Whether what the unit has computed from its parameters still belongs to them, if it is initialised, and whether
+    /// what nobody checks when it is used can be used. Asked of units read from bytes only, which anybody may have written;
+    /// a unit answers for whatever could make it panic or compute without end.
+    fn is_consistent(&self, is_initialised: bool) -> bool {
+        let _ = is_initialised;
         true
     }
 }

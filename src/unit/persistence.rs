@@ -74,7 +74,7 @@ fn read<U: Unit + DeserializeOwned>(
             variable.check(*value).map_err(|value| PersistenceError::Value { unit: name, value })?;
         }
     }
-    if is_initialised && !unit.is_consistent() {
+    if !unit.is_consistent(is_initialised) {
         return Err(PersistenceError::Inconsistent { unit: name });
     }
     Ok(unit)

@@ -223,12 +223,17 @@ impl<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U: usize>
     }
 
     /// An importer may set states from which nothing can be computed, so that only they themselves have to be finite.
-    fn is_consistent(&self) -> bool {
+    fn is_consistent(&self, is_initialised: bool) -> bool {
+        let are_finite = |numbers: &[f64]| numbers.iter().all(|number| number.is_finite());
+        // Slopes outlive initialisation.
+        if !is_initialised || !are_finite(&self.slopes) {
+            return are_finite(&self.slopes);
+        }
         let mut expected = self.values;
         E::calculate_parameters(&mut expected);
         expected.map(f64::to_bits) == self.values.map(f64::to_bits)
             && self.equations == E::new(&self.values)
-            && self.motion().state.iter().chain(&self.slopes).all(|number| number.is_finite())
+            && are_finite(&self.motion().state)
             && self.sensor.belongs_to(self.values[E::SENSOR.sample_time])
     }
 }
@@ -255,5 +260,27 @@ fn announce<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U:
 ) {
     if let Some(announcement) = E::announcement(mode) {
         journal.note(Topic::Events, format_args!("by t = {time} s {announcement}"));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::unit::{ContinuousUnit, LevitatedBallPlant, Persistent, Unit};
+
+    /// Guards: slopes that initialisation keeps and that no step can use.
+    #[test]
+    fn slopes_from_bytes_are_finite_before_initialisation_too() {
+        let mut plant = LevitatedBallPlant::new();
+        let (voltage, _) = plant.description().find("voltage").unwrap();
+        let slope = 0.123_456_789_f64;
+        plant.set_input_slope(voltage, slope);
+        let mut bytes = [0; 4096];
+        let length = plant.save(&mut bytes).unwrap();
+        assert!(plant.restore(&bytes[..length], false).is_ok());
+        assert_eq!(plant.input_slope(voltage), slope);
+        let place = bytes.windows(8).position(|window| window == slope.to_le_bytes()).unwrap();
+        bytes[place..place + 8].copy_from_slice(&f64::NAN.to_le_bytes());
+        assert!(plant.restore(&bytes[..length], false).is_err());
+        assert_eq!(plant.input_slope(voltage), slope);
     }
 }

@@ -103,9 +103,10 @@ impl<C: ObserverAndLaw<N>, const N: usize> Unit for SampledController<C, N> {
         Some(self)
     }
 
-    fn is_consistent(&self) -> bool {
-        self.clock.may_stand_where_it_does(self.values[C::ROWS.sample_time])
-            && self.controller.is_consistent(&self.values)
+    fn is_consistent(&self, is_initialised: bool) -> bool {
+        !is_initialised
+            || self.clock.may_stand_where_it_does(self.values[C::ROWS.sample_time])
+                && self.controller.is_consistent(&self.values)
     }
 }
 
