@@ -112,8 +112,8 @@ class Fmu:
                 number = int(number)
             # Integers of C wrap around, and truth values are integers of Python.
             is_true_or_false = isinstance(value, bool)
-            is_too_large = variable.type in WHOLE and not _is_32_bit(number)
-            if is_too_large or is_true_or_false != (variable.type == "Boolean"):
+            fits = variable.type not in WHOLE or _is_32_bit(number)
+            if not fits or is_true_or_false != (variable.type == "Boolean"):
                 raise ValueError(f"{name} = {value!r}: expected a value of type {variable.type}")
             try:
                 self._accessor("set", variable)([variable.valueReference], [number])

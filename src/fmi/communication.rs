@@ -89,12 +89,12 @@ impl CommunicationPoint {
     #[cold]
     fn duration_after_gap(&self, point: f64, step_size: f64) -> Result<f64, CallError> {
         let gap = point - self.now;
-        // Times round by their own size, be the step as long as it likes; where they come to 0, by that of those before.
+        // Times round by their own size, be the step as long as it likes; where they come to 0, by the size of those before.
         let largest_time = point.abs().max(self.now.abs());
-        let rounding = (ROUNDING * largest_time).max(self.drift.min(ROUNDING * step_size));
-        if gap.abs() <= rounding {
+        let rounding_before = (ROUNDING / HALF_A_UNIT * self.drift).min(TOLERANCE * step_size);
+        if gap.abs() <= ROUNDING * largest_time {
             Ok(step_size)
-        } else if gap.abs() <= TOLERANCE * step_size.min(largest_time) {
+        } else if gap.abs() <= (TOLERANCE * step_size.min(largest_time)).max(rounding_before) {
             Ok(step_size + gap)
         } else {
             Err(CallError::TimeDoesNotFollow { got: point, expected: self.now })
@@ -132,6 +132,7 @@ impl CommunicationPoint {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     #[test]
     fn rounding_is_ignored_and_small_gaps_pass() {
@@ -171,6 +172,24 @@ mod tests {
             point.move_to(time + 0.1);
             let multiple = -1.0 + f64::from(k) * 0.1;
             assert!((point.duration(multiple, 0.1).unwrap() - 0.1).abs() < 1e-15, "{multiple}");
+        }
+    }
+
+    proptest! {
+        /// Guards: communication points start + k h of importers that start before 0, refused where they come to 0.
+        #[test]
+        fn multiples_of_a_step_follow_each_other_through_zero(start in -10.0..-1e-3f64, steps in 1u32..3000) {
+            let h = -start / f64::from(steps);
+            let (mut point, mut passed) = (CommunicationPoint::new(start, None), 0.0);
+            for k in 0..steps + 5 {
+                let time = start + f64::from(k) * h;
+                let duration = point.duration(time, h);
+                prop_assert!(duration.is_ok(), "start {start} step {h} number {k}: {duration:?}");
+                passed += duration.unwrap();
+                point.move_to(time + h);
+            }
+            let expected = f64::from(steps + 5) * h;
+            prop_assert!((passed - expected).abs() < 1e-11 * expected, "{passed} {expected}");
         }
     }
 

@@ -99,14 +99,6 @@ impl HeldBall {
         let [position, velocity] = numbers;
         (State { position, velocity }, contact)
     }
-
-    /// State and contact at a start from `state`: a position beyond a stop becomes the stop's.
-    pub fn settle(&self, state: State) -> (State, Contact) {
-        let mut numbers = [state.position, state.velocity];
-        let contact = end_stops::transition(self, &mut numbers, Contact::None);
-        let [position, velocity] = numbers;
-        (State { position, velocity }, contact)
-    }
 }
 
 impl<S: Scalar> Guided<2, S> for HeldBall<S> {
@@ -222,10 +214,16 @@ mod tests {
 
     #[test]
     fn start_beyond_a_stop_is_at_the_stop() {
-        let (state, contact) = held(0.0).settle(State { position: 1.0, velocity: 2.0 });
-        assert_eq!((state.position, state.velocity, contact), (25e-3, 0.0, Contact::AtLargestPosition));
-        let inside = State { position: 9e-3, velocity: 0.3 };
-        assert_eq!(held(0.0).settle(inside), (inside, Contact::None));
+        let ball = held(0.0);
+        for (given, expected, contact) in [
+            ([1.0, 2.0], [25e-3, 0.0], Contact::AtLargestPosition),
+            ([9e-3, 0.3], [9e-3, 0.3], Contact::None),
+        ] {
+            let mut start = end_stops::settled(given, ball.stops());
+            assert_eq!(start, expected);
+            assert_eq!(end_stops::transition(&ball, &mut start, Contact::None), contact);
+            assert_eq!(start, expected);
+        }
     }
 
     proptest! {

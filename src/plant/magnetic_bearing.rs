@@ -82,11 +82,6 @@ impl<S: Scalar> MagneticBearing<S> {
 }
 
 impl MagneticBearing {
-    /// Derivative of [`Self::acceleration`] with respect to the flux \[m/(s2 Wb)\], continuous at zero flux.
-    pub fn acceleration_slope(&self, flux: f64) -> f64 {
-        self.epsilon + 2.0 * flux.abs()
-    }
-
     /// The state after `duration` \[s\] under a held `voltage` \[V\].
     #[inline]
     pub fn advance(&self, map: Map, state: State, voltage: f64, duration: f64) -> State {

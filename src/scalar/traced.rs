@@ -55,10 +55,9 @@ impl Traced {
         rows.filter_map(|(row, entry)| entry.map(|(kind, slope)| (row, kind, slope)))
     }
 
-    /// This number, depending also, in no particular way, on what decides which `cause` there is.
+    /// This number, which depends in no particular way on whatever `cause` depends on, too.
     pub fn caused_by(self, cause: Self) -> Self {
-        let depended_on = cause.bent(0.0);
-        Self { value: self.value, ..self.combined(depended_on, self.value) }
+        self.combined(cause.bent(0.0), self.value)
     }
 
     fn is_literally_zero(&self) -> bool {

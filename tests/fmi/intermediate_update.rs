@@ -186,6 +186,7 @@ fn a_callback_that_resets_the_instance_ends_the_step() {
     assert_eq!(component.step(0.0, 0.01), ERROR);
     let told = component.recorder.messages().pop().unwrap().text;
     assert!(told.starts_with("fmi3DoStep: ended by its callback, which has reset"), "{told}");
+    assert!(told.ends_with("it is now in the phase \"instantiated\""), "{told}");
     component.initialise(0.0);
     // None of the callbacks is due before the second tick.
     assert_eq!(component.step(0.0, 1e-3), OK);

@@ -223,6 +223,7 @@ fn a_callback_that_resets_the_instance_ends_the_activation() {
     assert_eq!(component.activate(0.0), ERROR);
     let told = component.recorder.messages().pop().unwrap().text;
     assert!(told.starts_with("fmi3ActivateModelPartition: ended by its callback, which has reset"), "{told}");
+    assert!(told.ends_with("it is now in the phase \"instantiated\""), "{told}");
     component.initialise(0.0);
 }
 
