@@ -12,7 +12,7 @@ import subprocess
 import sys
 
 from standard_calls import MEMORY
-from standard_output import Parser
+from standard_output import Parser, tell
 
 TEST = "random::a_hundred_thousand_random_calls_for_a_memory_checker"
 # What the test program's own tables keep until it ends is "possibly" lost to valgrind, which sees no pointers inside.
@@ -33,7 +33,7 @@ def main() -> None:
     Parser(description=__doc__.split("\n")[0]).parse_args()
     command = [*VALGRIND, test_program(), "--ignored", "--exact", TEST, "--nocapture", "--test-threads=1"]
     run = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    print(run.stdout)
+    tell(run.stdout)
     calls = re.search(r"(\d+) calls", run.stdout)
     errors = re.search(r"ERROR SUMMARY: ([\d,]+) errors", run.stdout)
     if run.returncode != 0 or calls is None or errors is None:

@@ -23,7 +23,7 @@ import standard_calls
 from importers import ANY, CO_SIMULATION, MODEL_EXCHANGE, SCHEDULED_EXECUTION, Task, checkers, in_cpp, systems
 from importers import with_fmpy, with_fmuloader
 from lxml import etree
-from standard_output import Parser
+from standard_output import Parser, tell
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 PAGE = REPOSITORY / "docs" / "conformance.md"
@@ -217,14 +217,14 @@ def main() -> None:
     outcomes = {}
     for task, package in cells(options.dist.resolve()):
         outcome = outcomes[task, package] = run(task, package)
-        print(f"{label(task, form_of(package))} {package.stem}: {outcome.error or outcome.word}", flush=True)
+        tell(f"{label(task, form_of(package))} {package.stem}: {outcome.error or outcome.word}")
     if not outcomes:
         sys.exit(f"no packages in {options.dist}: build them first, cargo run --release -- build")
     if not all(outcome.is_good for outcome in outcomes.values()):
         sys.exit("not everything went well")
     if options.write:
         PAGE.write_text(page(outcomes), encoding="utf-8")
-        print(f"written: {PAGE} on {platform.platform()}")
+        tell(f"written: {PAGE} on {platform.platform()}")
 
 
 if __name__ == "__main__":

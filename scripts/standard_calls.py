@@ -5,6 +5,8 @@ from __future__ import annotations
 import tomllib
 from pathlib import Path
 
+from standard_output import tell
+
 TESTS = Path(__file__).resolve().parent.parent / "tests" / "fmi"
 DEVIATIONS = TESTS / "standard" / "deviations.toml"
 FIGURES = TESTS / "random" / "figures.toml"
@@ -57,4 +59,4 @@ def section() -> str:
 
 
 if __name__ == "__main__":
-    print(section())
+    tell(section())

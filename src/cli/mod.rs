@@ -20,7 +20,7 @@ use output::OutputError;
 /// Magnetic levitation and magnetic bearings as FMI 2.0 and FMI 3.0 units.
 ///
 /// Without a command: builds the units into dist, reproduces everything into results and prints the verdicts.
-/// Ends with status 0, 1 after an error, and 141, quietly, when the reader of standard output has closed the pipe.
+/// Ends with status 0, 1 after an error, 2 for a wrong command line, and 141, quietly, when the reader of standard output has closed the pipe.
 #[derive(Debug, Parser)]
 #[command(version)]
 pub struct CommandLine {

@@ -161,3 +161,25 @@ fn steps_beyond_longest_step_are_refused_with_callbacks_and_without() {
         }
     }
 }
+
+/// Guards: a limit of computing that was named where the loop's own is smaller, so that the step named was refused.
+#[test]
+fn the_smaller_of_two_limits_is_named_and_accepted() {
+    for (standard, unit) in
+        BOTH.into_iter().flat_map(|standard| sampled_units().map(move |unit| (standard, unit)))
+    {
+        for (longest_step, named) in
+            [(1e-3, "at most longest_step = 0.001 s"), (1e9, "about a second of computing")]
+        {
+            let component = Component::new(standard, unit);
+            assert_eq!(component.set("longest_step", longest_step), OK);
+            component.initialise(0.0);
+            component.recorder.clear();
+            component.assert_refused(component.step(0.0, 1e30), &[named]);
+        }
+        let component = Component::new(standard, unit);
+        assert_eq!(component.set("longest_step", 1e-3), OK);
+        component.initialise(0.0);
+        assert_eq!(component.step(0.0, 1e-3), OK);
+    }
+}
