@@ -7,8 +7,11 @@ use super::UnitError;
 use super::quantity::DURATION;
 use super::variable::{Kind, Variable};
 
-/// Share of the limit that rounding may add to a step.
-const ROUNDING: f64 = 1e-9;
+/// Share of the limit that an importer's arithmetic may add to a step; no loop notices it.
+const ROUNDING: f64 = 1e-6;
+
+/// Units in the last place of a time by which a step may be off that is the difference of two times.
+const ROUNDING_OF_TIMES: f64 = 4.0;
 
 /// Row of the tables of all controllers; without another start value it refuses nothing.
 pub const fn longest_step() -> Variable {
@@ -18,10 +21,17 @@ pub const fn longest_step() -> Variable {
     )
 }
 
-/// Refuses a step of `duration` \[s\] beyond `limit` \[s\].
+/// Refuses a step of `duration` \[s\] from `time` \[s\] on that is beyond `limit` \[s\] by more than rounding.
 #[inline]
-pub fn check_step(duration: f64, limit: f64) -> Result<(), UnitError> {
-    if duration <= limit * (1.0 + ROUNDING) {
+pub fn check_step(time: f64, duration: f64, limit: f64) -> Result<(), UnitError> {
+    if duration <= limit * (1.0 + ROUNDING) { Ok(()) } else { check_difference(time, duration, limit) }
+}
+
+/// As [`check_step`] for a step that is perhaps the difference of two times, which are rounded by their own size.
+#[cold]
+fn check_difference(time: f64, duration: f64, limit: f64) -> Result<(), UnitError> {
+    let rounding = ROUNDING_OF_TIMES * f64::EPSILON * (time.abs() + limit);
+    if duration <= limit * (1.0 + ROUNDING) + rounding {
         Ok(())
     } else {
         Err(UnitError::BeyondLongestStep { duration, limit })
@@ -32,11 +42,30 @@ pub fn check_step(duration: f64, limit: f64) -> Result<(), UnitError> {
 mod tests {
     use super::*;
 
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Guards: steps that an importer computes as differences of its times.
+        #[test]
+        fn differences_of_times_are_steps(
+            exponent in -6.0..1.0f64, start in -1e6..1e6f64, place in 0..1_000_000u32,
+        ) {
+            let limit = libm::pow(10.0, exponent);
+            let time = start + f64::from(place) * limit;
+            let end = start + (f64::from(place) + 1.0) * limit;
+            prop_assert_eq!(check_step(time, end - time, limit), Ok(()));
+            prop_assert_eq!(check_step(time, (time + limit) - time, limit), Ok(()));
+            let duration = 1.01 * limit;
+            prop_assert_eq!(check_step(time, duration, limit), Err(UnitError::BeyondLongestStep { duration, limit }));
+        }
+    }
+
     #[test]
     fn longer_steps_are_refused_with_the_limit() {
-        assert_eq!(check_step(1e-3, 1e-3), Ok(()));
-        assert_eq!(check_step(1e-3 + 1e-15, 1e-3), Ok(()), "rounded");
-        let refused = check_step(0.01, 1e-3).unwrap_err();
+        assert_eq!(check_step(0.0, 1e-3, 1e-3), Ok(()));
+        let refused = check_step(0.0, 0.01, 1e-3).unwrap_err();
         assert_eq!(refused.to_string(), "a step of 0.01 s: expected at most longest_step = 0.001 s");
+        let refused = check_step(0.0, 1.00001e-3, 1e-3).unwrap_err();
+        assert_eq!(refused.to_string(), "a step of 0.00100001 s: expected at most longest_step = 0.001 s");
     }
 }

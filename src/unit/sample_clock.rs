@@ -106,6 +106,11 @@ impl SampleClock {
         self.elapsed = (time, 0.0);
     }
 
+    /// Where the clock stands \[s\].
+    pub fn time(&self) -> f64 {
+        self.elapsed.0
+    }
+
     /// \[s\]
     pub fn period(&self) -> f64 {
         self.period

@@ -47,7 +47,7 @@ pub trait SampledUnit {
     /// Refuses a step over `duration` \[s\] that the loop would not bear.
     #[inline]
     fn require_bearable_step(&self, duration: f64) -> Result<(), UnitError> {
-        check_step(duration, self.longest_step())
+        check_step(self.clock().time(), duration, self.longest_step())
     }
 }
 

@@ -207,3 +207,58 @@ fn the_smaller_of_two_limits_is_named_and_accepted() {
         assert_eq!(component.step(0.0, 1e-3), OK);
     }
 }
+
+/// Starts at which the differences of times are off by more than a billionth of the step.
+const LATE_STARTS: [f64; 4] = [1677.0, 33_554.0, 50_000.0, 1e6];
+
+/// Guards: `longest_step`, which refused what it names to importers that compute their steps as differences of times.
+#[test]
+fn longest_step_allows_for_the_rounding_of_times() {
+    for (standard, unit) in
+        BOTH.into_iter().flat_map(|standard| sampled_units().map(move |unit| (standard, unit)))
+    {
+        for (start, longest_step) in LATE_STARTS.into_iter().flat_map(|start| [(start, 1e-3), (-start, 1e-4)])
+        {
+            let component = Component::new(standard, unit);
+            assert_eq!(component.set("longest_step", longest_step), OK);
+            component.initialise(start);
+            let mut time = start;
+            for k in 1..=100 {
+                let end = start + f64::from(k) * longest_step;
+                let status = component.step(time, end - time);
+                assert!(status == OK, "{unit} {start}: {:?}", component.recorder.messages());
+                time = end;
+            }
+        }
+    }
+}
+
+/// Guards: a unit that ended a step at its own tick and refused what it had made of it.
+#[test]
+fn steps_that_end_at_ticks_are_one_sample_time_long_at_any_time() {
+    for unit in sampled_units() {
+        for (start, sample_time) in
+            LATE_STARTS.map(|start| (start, 1e-3)).into_iter().chain([(8.3, 1e-6), (1677.0, 1e-4)])
+        {
+            let choices = Choices { event_mode: true, early_return: true, intermediate_update: None };
+            let component = Component::co_simulation(unit, choices);
+            assert_eq!(component.set("sample_time", sample_time), OK);
+            assert_eq!(component.set("longest_step", sample_time), OK);
+            component.initialise(start);
+            let mut time = start;
+            for _ in 0..20 {
+                component.settle_event();
+                assert_eq!(component.enter_step_mode(), OK);
+                let step = component.step_to_event(time, 1.0);
+                assert!(
+                    step.status == OK && step.is_event,
+                    "{unit} {start}: {:?}",
+                    component.recorder.messages()
+                );
+                time = step.reached;
+                assert_eq!(component.enter_event_mode(), OK);
+            }
+            assert!(time > start + 18.5 * sample_time);
+        }
+    }
+}
