@@ -2,7 +2,21 @@
 
 use std::fs::{self, File, OpenOptions, Permissions};
 use std::io::{self, Read, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// A file that was written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WrittenFile {
+    pub path: PathBuf,
+    /// \[byte\]
+    pub size: usize,
+}
+
+/// As [`replace`], and says what was written.
+pub(crate) fn write(path: PathBuf, contents: &[u8]) -> io::Result<WrittenFile> {
+    replace(&path, contents)?;
+    Ok(WrittenFile { path, size: contents.len() })
+}
 
 /// Writes a file under another name beside it first, so that a failure, such as a full disk, leaves the old file or
 /// none, but never a part of the new one. A link stays a link, and a device or pipe is written to.

@@ -11,6 +11,8 @@ pub mod host;
 pub mod observer;
 #[cfg(feature = "tools")]
 pub mod package;
+#[cfg(feature = "tools")]
+pub mod parameter_file;
 pub mod plant;
 pub mod scalar;
 pub mod signal;

@@ -4,7 +4,8 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use maglev_fmu::package::{self, GenerationTime, Library, ParameterFile};
+use maglev_fmu::package::{self, GenerationTime, Library};
+use maglev_fmu::parameter_file::ParameterFile;
 use maglev_fmu::unit::{Description, StartValues};
 
 use super::output::{report, say};

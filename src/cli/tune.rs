@@ -7,7 +7,7 @@ use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use maglev_fmu::host::Value;
-use maglev_fmu::package::ParameterFile;
+use maglev_fmu::parameter_file::ParameterFile;
 use maglev_fmu::study::output;
 use maglev_fmu::study::report::quantity;
 use maglev_fmu::study::tuning::candidate::ObserverKind;

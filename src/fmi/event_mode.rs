@@ -1,6 +1,6 @@
 //! Event mode, which model exchange and co-simulation share.
 
-use super::model_exchange::EarliestTime;
+use super::earliest_time::EarliestTime;
 use super::ticking::sampled;
 use super::{CallError, Instance, Interface, Phase};
 

@@ -2,10 +2,10 @@
 
 use core::fmt;
 
+use super::earliest_time::EarliestTime;
 use super::floating_point::in_default_environment;
 use super::fmi3::types::{fmi3ClockUpdateCallback, fmi3InstanceEnvironment};
 use super::intermediate_update::{IntermediateUpdate, StepInProgress};
-use super::model_exchange::EarliestTime;
 use super::saved_state::Life;
 use super::ticking::ClockStates;
 use super::{CallError, CommunicationPoint, Function, Interface, Logger, Phase, SavedState, StateError};

@@ -8,6 +8,7 @@ mod access;
 mod boundary;
 mod communication;
 mod derivatives;
+mod earliest_time;
 mod error;
 mod event_mode;
 mod floating_point;

@@ -1,46 +1,11 @@
 //! Model exchange: the importer integrates the states, the instance evaluates derivatives and event indicators.
 
-use serde::{Deserialize, Serialize};
-
-use super::communication::ROUNDING;
 use super::event_mode::EventEnd;
 use super::{CallError, Instance, Interface, Phase};
 use crate::unit::continuous::nominal;
 use crate::unit::value::{ValueError, is_finite};
 use crate::unit::variable::Variable;
 use crate::unit::{ContinuousUnit, TIME};
-
-/// How far time may go back: not beyond the last event, nor beyond the completed step before the last one (FMI 2.0.5,
-/// section 3.2.2; FMI 3.0.2, section 3.2.1). Within that a solver may look at an earlier time again.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct EarliestTime {
-    /// \[s\]
-    time: f64,
-    /// Time of the last completed step or, after it, of the last event \[s\].
-    last_completed: f64,
-}
-
-impl EarliestTime {
-    /// Right after an event at `time` \[s\]; initialisation counts as one.
-    pub fn at_event(time: f64) -> Self {
-        Self { time, last_completed: time }
-    }
-
-    fn completed_step(&mut self, time: f64) {
-        *self = Self { time: self.last_completed, last_completed: time };
-    }
-
-    pub fn is_finite(&self) -> bool {
-        self.time.is_finite() && self.last_completed.is_finite()
-    }
-
-    fn check(&self, time: f64) -> Result<(), CallError> {
-        if time >= self.time - ROUNDING * self.time.abs() {
-            return Ok(());
-        }
-        Err(CallError::TimeGoesBack { got: time, earliest: self.time })
-    }
-}
 
 impl Instance {
     /// Refuses functions that belong to model exchange alone on instances that were made for something else.
@@ -83,7 +48,7 @@ impl Instance {
     /// Solvers look past the stop time, since they interpolate back from there; to stay there is an error.
     pub(super) fn require_not_past_stop_time(&self) -> Result<(), CallError> {
         let now = self.communication.now();
-        self.communication.require_before_stop_time("time", now, now - self.earliest_time.time)
+        self.communication.require_before_stop_time("time", now, now - self.earliest_time.time())
     }
 
     /// Nothing depends on time but through the inputs.

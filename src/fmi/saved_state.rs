@@ -15,7 +15,7 @@
 //! 58  n   payload
 //! ```
 
-use super::model_exchange::EarliestTime;
+use super::earliest_time::EarliestTime;
 use super::ticking::ClockStates;
 use super::{CommunicationPoint, Instance, Interface, Phase};
 use crate::unit::memory::OutOfMemory;

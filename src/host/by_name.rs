@@ -1,10 +1,10 @@
 //! Access to variables by their names: convenient, not fast.
 
-use super::description::Kind;
 use super::error::{HostError, Result};
 use super::fmu::c_text;
 use super::instance::Instance;
 use super::value::Value;
+use super::variable::Kind;
 
 impl Instance {
     /// Sets a variable by its name: a number, a flag, the name of an enumeration's item, or a string.

@@ -2,7 +2,7 @@
 
 use std::ffi::{CStr, c_void};
 
-use super::description::Storage;
+use super::variable::Storage;
 
 /// Why an FMU did not do what it was asked to.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use crate::causes::printable;
 use crate::fmi::Status;
 
-use super::description::{Kind, Storage};
+use super::variable::{Kind, Storage};
 
 /// Result of every fallible operation of the host.
 pub type Result<T> = std::result::Result<T, HostError>;

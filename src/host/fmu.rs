@@ -6,13 +6,13 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::archive::Archive;
-use super::component::Component;
 use super::description::ModelDescription;
 use super::error::{HostError, Result};
 use super::instance::{Instance, Logging};
 use super::journal::Journal;
 use super::library::LoadedLibrary;
 use super::limits::Limits;
+use super::loaded::{Functions, Loaded};
 use super::{fmi2, fmi3};
 use crate::fmi::FmiVersion;
 
@@ -22,30 +22,6 @@ use crate::fmi::FmiVersion;
 #[derive(Clone)]
 pub struct Fmu {
     loaded: Arc<Loaded>,
-}
-
-/// Everything an instance needs to stay alive. The order of the fields is the order in which they go:
-/// the library before its file, which some systems do not let go earlier.
-pub(super) struct Loaded {
-    functions: Functions,
-    _library: LoadedLibrary,
-    archive: Archive,
-    pub(super) description: ModelDescription,
-}
-
-enum Functions {
-    Two(fmi2::Functions),
-    Three(Box<fmi3::Functions>),
-}
-
-impl Functions {
-    /// The function that creates an instance, for error messages.
-    fn instantiate_name(&self) -> &'static str {
-        match self {
-            Self::Two(_) => "fmi2Instantiate",
-            Self::Three(_) => "fmi3InstantiateCoSimulation",
-        }
-    }
 }
 
 impl Fmu {
@@ -116,14 +92,7 @@ impl Fmu {
         let resources = c_text("resource path", &resources)?;
         let journal = Arc::new(Journal::default());
         let log = logging == Logging::On;
-        let component: Option<Box<dyn Component>> = match &loaded.functions {
-            Functions::Two(functions) => functions
-                .instantiate(&c_name, &token, &resources, log, Arc::clone(&journal))
-                .map(|component| Box::new(component) as _),
-            Functions::Three(functions) => functions
-                .instantiate(&c_name, &token, &resources, log, Arc::clone(&journal))
-                .map(|component| Box::new(component) as _),
-        };
+        let component = loaded.functions.instantiate(&c_name, &token, &resources, log, &journal);
         let Some(component) = component else {
             return Err(HostError::Instantiate {
                 model: loaded.description.model_name.clone(),

@@ -5,13 +5,15 @@ use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::component::{Component, Refusal};
-use super::description::{Kind, ModelDescription};
+use super::component::{Answer, Component, Refusal};
+use super::description::ModelDescription;
 use super::error::{HostError, Result};
-use super::fmu::Loaded;
 use super::journal::{Journal, LogMessage};
-use super::refusal::Subject;
+use super::loaded::Loaded;
+use super::refusal::{Subject, error_of};
 use super::value::Handle;
+use super::variable::Kind;
+use crate::fmi::Status;
 
 /// Whether an instance is asked to log; it may report errors in any case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -234,9 +236,29 @@ impl Instance {
         self.explain(answer, Subject::none)
     }
 
-    /// After `Fatal`: no more calls, not even to free the instance.
-    pub(super) fn give_up(&self) {
-        self.phase.set(Phase::Lost);
+    /// Turns a refusal into an error with all names; looks up the variable only then.
+    #[inline]
+    pub(super) fn explain<T>(&self, answer: Answer<T>, variable: impl FnOnce() -> Subject) -> Result<T> {
+        answer.map_err(|refusal| self.error(refusal, variable()))
+    }
+
+    #[cold]
+    fn error(&self, refusal: Refusal, subject: Subject) -> HostError {
+        if matches!(refusal, Refusal::Status { status, .. } if status == Status::Fatal as i32) {
+            // No more calls, not even to free the instance.
+            self.phase.set(Phase::Lost);
+        }
+        let (instance, log) = (self.name.clone(), self.journal.last_text());
+        error_of(refusal, subject, instance, &self.description().model_name, log)
+    }
+
+    /// The variable behind a handle.
+    pub(super) fn describe(&self, handle: Handle) -> Subject {
+        Subject::of(handle, self.description())
+    }
+
+    pub(super) fn wrong_kind(&self, variable: &str, kind: Kind, given: &'static str) -> HostError {
+        HostError::WrongKind { instance: self.name.clone(), variable: variable.to_owned(), kind, given }
     }
 
     #[inline]

@@ -32,19 +32,18 @@ mod instance;
 mod journal;
 mod library;
 mod limits;
+mod loaded;
 mod master;
 mod refusal;
 mod route;
 mod saved_state;
 mod trace;
 mod value;
+mod variable;
 
 pub use crate::fmi::FmiVersion;
 pub use archive::Archive;
-pub use description::{
-    Causality, CoSimulation, DefaultExperiment, EnumerationItem, Kind, ModelDescription, Storage,
-    Variability, Variable,
-};
+pub use description::{CoSimulation, DefaultExperiment, EnumerationItem, ModelDescription};
 pub use error::{HostError, ReportedStatus, Result};
 pub use fmu::Fmu;
 pub use instance::{Instance, Logging};
@@ -54,3 +53,4 @@ pub use master::{ExchangeOrder, TwoUnitLoop};
 pub use saved_state::SavedState;
 pub use trace::Trace;
 pub use value::{Handle, Value};
+pub use variable::{Causality, Kind, Storage, Variability, Variable};

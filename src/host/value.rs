@@ -1,6 +1,6 @@
 //! How variables and their values are named in calls to an instance.
 
-use super::description::{Kind, Storage};
+use super::variable::{Kind, Storage};
 
 /// A resolved variable: what the C interface needs to access it. Valid for every instance of the same FMU.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

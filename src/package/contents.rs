@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::documentation::documentation;
 use super::icon::{icon_png, icon_svg};
-use super::loop_diagram::loop_diagram;
+use super::loop_diagram::{diagram_name, loop_diagram};
 use super::model_description::{model_description, terminals_and_icons};
 use super::plug::Plug;
 use super::reference_run::ReferenceRun;
@@ -32,11 +32,6 @@ impl<'a> Entry<'a> {
 
 /// File name of the figure of the reference run, beside the documentation's first page.
 pub const RUN_FIGURE: &str = "reference-run.svg";
-
-/// File name of the block diagram of a loop, beside the documentation's first page.
-pub fn diagram_name(system: &str) -> String {
-    format!("{system}.svg")
-}
 
 /// All files of the package of one unit in one form, sorted by path.
 pub fn contents<'a>(

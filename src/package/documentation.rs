@@ -4,7 +4,8 @@ use std::borrow::Cow;
 
 use quick_xml::escape::escape;
 
-use super::contents::{RUN_FIGURE, diagram_name};
+use super::contents::RUN_FIGURE;
+use super::loop_diagram::diagram_name;
 use super::model_description::enumerations;
 use super::plug::Plug;
 use super::related_files::{DIRECTORY, INPUT, OUTPUT};

@@ -4,10 +4,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use super::building::write;
 use super::model_page::{model_index, model_page};
-use super::{
-    Form, PackageError, THIRD_PARTY_PATH, WrittenFile, model_description, replace_file, third_party,
-};
+use super::{Form, PackageError, THIRD_PARTY_PATH, WrittenFile, model_description, third_party};
 use crate::unit::{StartValues, UNITS};
 
 /// Path below the repository's root and text of each file that is generated from the variable tables.
@@ -39,17 +38,12 @@ pub fn describe(root: &Path) -> Result<Vec<WrittenFile>, PackageError> {
             fs::create_dir_all(directory)
                 .map_err(|source| PackageError::Write { path: directory.to_owned(), source })?;
         }
-        written.push(write(path, &text)?);
+        written.push(write(path, text.as_bytes())?);
     }
     Ok(written)
 }
 
 /// Writes the list of the crates in the shared library below `root`, which holds the project's sources.
 pub fn describe_third_party(root: &Path) -> Result<WrittenFile, PackageError> {
-    write(root.join(THIRD_PARTY_PATH), &third_party(root)?)
-}
-
-fn write(path: PathBuf, text: &str) -> Result<WrittenFile, PackageError> {
-    replace_file(&path, text.as_bytes())?;
-    Ok(WrittenFile { path, size: text.len() })
+    write(root.join(THIRD_PARTY_PATH), third_party(root)?.as_bytes())
 }

@@ -52,6 +52,11 @@ impl Layout {
     }
 }
 
+/// File name of the block diagram of a loop, beside the documentation's first page.
+pub fn diagram_name(system: &str) -> String {
+    format!("{system}.svg")
+}
+
 /// The diagram; the box of the unit `shown`, if any, is filled.
 pub fn loop_diagram(system: &System, shown: Option<&Description>) -> String {
     let layout = Layout::new(system);

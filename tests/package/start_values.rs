@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 use maglev_fmu::host::{Fmu, Instance, Logging};
-use maglev_fmu::package::{self, Form, GenerationTime, Library, ParameterFile};
+use maglev_fmu::package::{self, Form, GenerationTime, Library};
+use maglev_fmu::parameter_file::ParameterFile;
 use maglev_fmu::unit::MAGNETIC_BEARING_CONTROLLER as CONTROLLER;
 use serde_json::json;
 

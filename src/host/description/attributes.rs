@@ -4,7 +4,8 @@ use std::str::FromStr;
 
 use crate::host::error::{HostError, Result};
 
-use super::{Causality, DefaultExperiment, Variability};
+use super::model_description::{DefaultExperiment, EnumerationItem};
+use crate::host::variable::{Causality, Variability};
 use serde::Deserialize;
 
 /// A number in an attribute that must be there.
@@ -118,13 +119,13 @@ pub(super) struct Item {
 }
 
 /// The items of the enumeration type called `type_name`.
-pub(super) fn items(type_name: &str, items: Vec<Item>) -> Result<Vec<super::EnumerationItem>> {
+pub(super) fn items(type_name: &str, items: Vec<Item>) -> Result<Vec<EnumerationItem>> {
     items
         .into_iter()
         .map(|item| {
             let element = format!("the item `{}` of the type `{type_name}`", item.name);
             let value = number(&element, "value", &item.value, "a whole number")?;
-            Ok(super::EnumerationItem { name: item.name, value })
+            Ok(EnumerationItem { name: item.name, value })
         })
         .collect()
 }

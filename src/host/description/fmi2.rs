@@ -8,7 +8,10 @@ use serde::Deserialize;
 use crate::host::error::{HostError, Result};
 
 use super::attributes::{self, Experiment, Item};
-use super::{CoSimulation, FmiVersion, Kind, ModelDescription, Storage, Variability, Variable};
+use super::document::read;
+use super::model_description::{CoSimulation, ModelDescription};
+use crate::fmi::FmiVersion;
+use crate::host::variable::{Kind, Storage, Variability, Variable};
 
 #[derive(Deserialize)]
 struct Document {
@@ -110,7 +113,7 @@ struct Value {
 }
 
 pub(super) fn parse(xml: &str) -> Result<ModelDescription> {
-    let document: Document = super::read(xml)?;
+    let document: Document = read(xml)?;
     let mut type_units = HashMap::new();
     let mut enumerations = HashMap::new();
     for simple in document.types.map(|types| types.simple).unwrap_or_default() {

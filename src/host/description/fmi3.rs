@@ -9,8 +9,11 @@ use serde::de::IgnoredAny;
 use crate::host::error::{HostError, Result};
 
 use super::attributes::{self, Experiment, Item};
+use super::document::read;
 use super::elements::{Known, known};
-use super::{CoSimulation, FmiVersion, Kind, ModelDescription, Storage, Variability, Variable};
+use super::model_description::{CoSimulation, ModelDescription};
+use crate::fmi::FmiVersion;
+use crate::host::variable::{Kind, Storage, Variability, Variable};
 
 #[derive(Deserialize)]
 struct Document {
@@ -161,7 +164,7 @@ struct Alias {
 }
 
 pub(super) fn parse(xml: &str) -> Result<ModelDescription> {
-    let document: Document = super::read(xml)?;
+    let document: Document = read(xml)?;
     let mut type_units = HashMap::new();
     let mut enumerations = HashMap::new();
     for element in document.types.map(|types| types.all).unwrap_or_default() {

@@ -1,17 +1,9 @@
-//! The C functions of FMI 2.0 that a co-simulation client calls, and how an instance is made.
-
-use std::ffi::{CStr, c_void};
-use std::mem::transmute;
-use std::ptr::NonNull;
-use std::sync::Arc;
+//! The C functions of FMI 2.0 that a co-simulation client calls.
 
 use crate::fmi::fmi2::types::*;
 
 use crate::host::error::Result;
-use crate::host::journal::Journal;
 use crate::host::library::LoadedLibrary;
-
-use super::instance::{Callbacks, FmiTwo};
 
 pub(super) type OfComponent = unsafe extern "C" fn(fmi2Component) -> fmi2Status;
 pub(super) type Get<T> =
@@ -95,74 +87,4 @@ impl Functions {
             })
         }
     }
-
-    /// A new co-simulation instance, `None` if the FMU refuses.
-    pub(in crate::host) fn instantiate(
-        self,
-        name: &CStr,
-        token: &CStr,
-        resource_location: &CStr,
-        logging: bool,
-        journal: Arc<Journal>,
-    ) -> Option<FmiTwo> {
-        let callbacks = Box::new(fmi2CallbackFunctions {
-            logger: Some(variadic_logger()),
-            allocate_memory: Some(calloc),
-            free_memory: Some(free),
-            step_finished: None,
-            component_environment: Arc::as_ptr(&journal).cast_mut().cast(),
-        });
-        // A raw pointer from here on: the FMU keeps it and reads through it until it is freed.
-        let callbacks = Callbacks(NonNull::from(Box::leak(callbacks)));
-        // SAFETY: all strings end with NUL and outlive the call; the callbacks outlive the instance.
-        let component = unsafe {
-            (self.instantiate)(
-                name.as_ptr(),
-                FMI2_CO_SIMULATION,
-                token.as_ptr(),
-                resource_location.as_ptr(),
-                callbacks.0.as_ptr(),
-                FMI2_FALSE,
-                fmi2Boolean::from(logging),
-            )
-        };
-        (!component.is_null()).then_some(FmiTwo {
-            component,
-            functions: self,
-            _callbacks: callbacks,
-            _journal: journal,
-        })
-    }
-}
-
-unsafe extern "C" {
-    // The C library's own, which the standard suggests and every program of the standard library links.
-    fn calloc(count: usize, size: usize) -> *mut c_void;
-    fn free(object: *mut c_void);
-}
-
-/// Collects a message; the arguments after the format string stay unread. Never unwinds, whatever its type allows.
-unsafe extern "C-unwind" fn log(
-    environment: fmi2ComponentEnvironment,
-    _instance_name: fmi2String,
-    status: fmi2Status,
-    category: fmi2String,
-    message: fmi2String,
-) {
-    // SAFETY: the environment is the journal of a living instance, the strings are C strings or NULL.
-    unsafe {
-        Journal::append(environment.cast_const().cast(), status, category, message, |text| {
-            text.replace("%%", "%")
-        });
-    }
-}
-
-fn variadic_logger() -> fmi2CallbackLogger {
-    type FixedArguments =
-        unsafe extern "C-unwind" fn(fmi2ComponentEnvironment, fmi2String, fmi2Status, fmi2String, fmi2String);
-    // SAFETY: stable Rust cannot define a variadic function. On the C ABIs of the supported platforms (System V
-    // x86-64, Windows x64, AAPCS64 and Apple's variant of it) the named arguments of a variadic call, all of them
-    // pointers and one int here, lie where those of an ordinary call lie, and the caller cleans up the rest.
-    // `log` reads the named arguments only, so it cannot tell the difference.
-    unsafe { transmute::<FixedArguments, fmi2CallbackLogger>(log) }
 }

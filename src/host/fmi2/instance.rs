@@ -1,23 +1,24 @@
 //! One instance of FMI 2.0.
 
 use std::ffi::{CStr, c_void};
-use std::ptr::{self, NonNull};
+use std::ptr;
 use std::sync::Arc;
 
 use crate::fmi::fmi2::types::*;
 use crate::host::component::{Answer, Component, Number, Refusal, accept, boolean_from};
-use crate::host::description::Storage;
 use crate::host::journal::{Journal, text_of};
+use crate::host::variable::Storage;
 
+use super::callbacks::Callbacks;
 use super::functions::{Functions, Get, OfComponent, Set};
 
 /// One co-simulation instance of FMI 2.0.
 pub(in crate::host) struct FmiTwo {
-    pub(super) component: fmi2Component,
-    pub(super) functions: Functions,
+    component: fmi2Component,
+    functions: Functions,
     // Both are only there to outlive the component that points to them.
-    pub(super) _callbacks: Callbacks,
-    pub(super) _journal: Arc<Journal>,
+    _callbacks: Callbacks,
+    _journal: Arc<Journal>,
 }
 
 // SAFETY: the standard binds an instance to no thread, it only forbids concurrent calls; `FmiTwo` is not `Sync`.
@@ -25,6 +26,36 @@ pub(in crate::host) struct FmiTwo {
 unsafe impl Send for FmiTwo {}
 
 impl FmiTwo {
+    /// A new co-simulation instance, `None` if the FMU refuses.
+    pub(in crate::host) fn instantiate(
+        functions: Functions,
+        name: &CStr,
+        token: &CStr,
+        resource_location: &CStr,
+        logging: bool,
+        journal: Arc<Journal>,
+    ) -> Option<Self> {
+        let callbacks = Callbacks::new(&journal);
+        // SAFETY: all strings end with NUL and outlive the call; the callbacks outlive the instance.
+        let component = unsafe {
+            (functions.instantiate)(
+                name.as_ptr(),
+                FMI2_CO_SIMULATION,
+                token.as_ptr(),
+                resource_location.as_ptr(),
+                callbacks.as_ptr(),
+                FMI2_FALSE,
+                fmi2Boolean::from(logging),
+            )
+        };
+        (!component.is_null()).then_some(Self {
+            component,
+            functions,
+            _callbacks: callbacks,
+            _journal: journal,
+        })
+    }
+
     fn call(&self, name: &'static str, function: OfComponent) -> Answer {
         // SAFETY: the component is alive until `free`.
         accept(name, unsafe { function(self.component) })
@@ -196,15 +227,5 @@ impl Component for FmiTwo {
         let source = bytes.as_ptr().cast();
         // SAFETY: as many bytes as said, room for one pointer.
         accept(name, unsafe { function(self.component, source, bytes.len(), &mut state) }).map(|()| state)
-    }
-}
-
-/// The callback table of one instance, which must not move.
-pub(super) struct Callbacks(pub(super) NonNull<fmi2CallbackFunctions>);
-
-impl Drop for Callbacks {
-    fn drop(&mut self) {
-        // SAFETY: the pointer came from `Box::leak`, and the instance that used it is gone.
-        drop(unsafe { Box::from_raw(self.0.as_ptr()) });
     }
 }

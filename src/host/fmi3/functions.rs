@@ -1,16 +1,9 @@
-//! The C functions of FMI 3.0 that a co-simulation client calls, and how an instance is made.
-
-use std::ffi::CStr;
-use std::ptr;
-use std::sync::Arc;
+//! The C functions of FMI 3.0 that a co-simulation client calls.
 
 use crate::fmi::fmi3::types::*;
 
 use crate::host::error::Result;
-use crate::host::journal::Journal;
 use crate::host::library::LoadedLibrary;
-
-use super::instance::FmiThree;
 
 pub(super) type OfInstance = unsafe extern "C" fn(fmi3Instance) -> fmi3Status;
 pub(super) type Get<T> =
@@ -140,44 +133,4 @@ impl Functions {
             })
         }
     }
-
-    /// A new co-simulation instance without event mode and early return, `None` if the FMU refuses.
-    pub(in crate::host) fn instantiate(
-        self,
-        name: &CStr,
-        token: &CStr,
-        resource_path: &CStr,
-        logging: bool,
-        journal: Arc<Journal>,
-    ) -> Option<FmiThree> {
-        // SAFETY: all strings end with NUL and outlive the call; the journal outlives the instance.
-        let instance = unsafe {
-            (self.instantiate)(
-                name.as_ptr(),
-                token.as_ptr(),
-                resource_path.as_ptr(),
-                FMI3_FALSE,
-                fmi3Boolean::from(logging),
-                FMI3_FALSE,
-                FMI3_FALSE,
-                ptr::null(),
-                0,
-                Arc::as_ptr(&journal).cast_mut().cast(),
-                Some(log),
-                None,
-            )
-        };
-        (!instance.is_null()).then_some(FmiThree { instance, functions: self, _journal: journal })
-    }
-}
-
-/// Collects a message and never unwinds, whatever its type allows.
-unsafe extern "C-unwind" fn log(
-    environment: fmi3InstanceEnvironment,
-    status: fmi3Status,
-    category: fmi3String,
-    message: fmi3String,
-) {
-    // SAFETY: the environment is the journal of a living instance, the strings are C strings or NULL.
-    unsafe { Journal::append(environment.cast_const().cast(), status, category, message, |text| text) };
 }

@@ -6,17 +6,17 @@ use std::sync::Arc;
 
 use crate::fmi::fmi3::types::*;
 use crate::host::component::{Answer, Component, Number, Refusal, accept, boolean_from};
-use crate::host::description::Storage;
 use crate::host::journal::{Journal, text_of};
+use crate::host::variable::Storage;
 
 use super::functions::{Access, Functions, OfInstance};
 
 /// One co-simulation instance of FMI 3.0.
 pub(in crate::host) struct FmiThree {
-    pub(super) instance: fmi3Instance,
-    pub(super) functions: Functions,
+    instance: fmi3Instance,
+    functions: Functions,
     // Only there to outlive the instance that points to it.
-    pub(super) _journal: Arc<Journal>,
+    _journal: Arc<Journal>,
 }
 
 // SAFETY: the standard binds an instance to no thread, it only forbids concurrent calls; `FmiThree` is not `Sync`.
@@ -24,6 +24,35 @@ pub(in crate::host) struct FmiThree {
 unsafe impl Send for FmiThree {}
 
 impl FmiThree {
+    /// A new co-simulation instance without event mode and early return, `None` if the FMU refuses.
+    pub(in crate::host) fn instantiate(
+        functions: Functions,
+        name: &CStr,
+        token: &CStr,
+        resource_path: &CStr,
+        logging: bool,
+        journal: Arc<Journal>,
+    ) -> Option<Self> {
+        // SAFETY: all strings end with NUL and outlive the call; the journal outlives the instance.
+        let instance = unsafe {
+            (functions.instantiate)(
+                name.as_ptr(),
+                token.as_ptr(),
+                resource_path.as_ptr(),
+                FMI3_FALSE,
+                fmi3Boolean::from(logging),
+                FMI3_FALSE,
+                FMI3_FALSE,
+                ptr::null(),
+                0,
+                Arc::as_ptr(&journal).cast_mut().cast(),
+                Some(log),
+                None,
+            )
+        };
+        (!instance.is_null()).then_some(Self { instance, functions, _journal: journal })
+    }
+
     fn call(&self, name: &'static str, function: OfInstance) -> Answer {
         // SAFETY: the instance is alive until `free`.
         accept(name, unsafe { function(self.instance) })
@@ -245,4 +274,15 @@ impl Component for FmiThree {
         // SAFETY: as many bytes as said, room for one pointer.
         accept(name, unsafe { function(self.instance, source, bytes.len(), &mut state) }).map(|()| state)
     }
+}
+
+/// Collects a message and never unwinds, whatever its type allows.
+unsafe extern "C-unwind" fn log(
+    environment: fmi3InstanceEnvironment,
+    status: fmi3Status,
+    category: fmi3String,
+    message: fmi3String,
+) {
+    // SAFETY: the environment is the journal of a living instance, the strings are C strings or NULL.
+    unsafe { Journal::append(environment.cast_const().cast(), status, category, message, |text| text) };
 }

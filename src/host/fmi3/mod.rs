@@ -4,3 +4,4 @@ mod functions;
 mod instance;
 
 pub(super) use functions::Functions;
+pub(super) use instance::FmiThree;

@@ -2,8 +2,8 @@
 
 use super::form::SystemForm;
 use crate::package::GenerationTime;
-use crate::package::contents::diagram_name;
 use crate::package::documentation::STYLE;
+use crate::package::loop_diagram::diagram_name;
 use crate::unit::system::System;
 
 /// The page as HTML.

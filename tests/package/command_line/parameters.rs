@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use maglev_fmu::package::ParameterFile;
+use maglev_fmu::parameter_file::ParameterFile;
 use maglev_fmu::unit::UnitType;
 use maglev_fmu::unit::system::System;
 use object::Architecture;

@@ -1,34 +1,16 @@
-//! Parameter files: values for the variables of one unit, with where they come from.
-//!
-//! ```json
-//! {
-//!   "unit": "MaglevRigController",
-//!   "values": { "observer.kind": 1, "observer.bandwidth": 180.0 },
-//!   "units": { "observer.kind": "item linear", "observer.bandwidth": "rad/s" },
-//!   "provenance": { "program": "maglev-fmu 0.1.0" }
-//! }
-//! ```
-//!
-//! `values` is what importers call start values; items of enumerations are written by number, since not every importer
-//! knows their names, and read by number or name. `units` is for people and, where given, must be right. `provenance`
-//! is anything.
+//! What a parameter file holds, and start values from it.
 
-mod reading;
-mod unique_keys;
-
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
-use thiserror::Error;
 
-pub use reading::LARGEST;
-
-use super::{PackageError, WrittenFile, replace_file};
-use crate::causes::printable;
+use super::ParameterFileError;
+use super::unique_keys;
+use crate::file::{self, WrittenFile};
 use crate::unit::start_values::StartValueError;
 use crate::unit::variable::{Kind, Variable};
-use crate::unit::{Description, StartValues, UNITS, UnitError};
+use crate::unit::{Description, StartValues, UNITS};
 
 /// Contents of a parameter file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -42,35 +24,6 @@ pub struct ParameterFile {
     pub units: Map<String, Value>,
     #[serde(default, deserialize_with = "unique_keys::value")]
     pub provenance: Value,
-}
-
-/// Why a parameter file was refused.
-#[derive(Debug, Error)]
-pub enum ParameterFileError {
-    #[error("cannot read {}", .path.display())]
-    Read { path: PathBuf, source: std::io::Error },
-    #[error("{} is no parameter file: {reason}", .path.display())]
-    Syntax { path: PathBuf, reason: String },
-    #[error("{} is in UTF-16, expected UTF-8", .path.display())]
-    Encoding { path: PathBuf },
-    #[error("there is no unit {}, expected one of {}", name.escape_debug(), unit_names())]
-    UnknownUnit { name: String },
-    #[error("{} = {}: expected {expected}", name.escape_debug(), printable(&value.to_string()))]
-    WrongKind { name: String, value: Value, expected: String },
-    #[error("{} is given in {}: expected {expected}", name.escape_debug(), printable(&given.to_string()))]
-    WrongUnit { name: String, given: Value, expected: String },
-    #[error("{} has a unit and no value", name.escape_debug())]
-    UnitWithoutValue { name: String },
-    #[error(transparent)]
-    StartValue(#[from] StartValueError),
-    #[error(transparent)]
-    DoNotFit(#[from] UnitError),
-    #[error(transparent)]
-    Write(#[from] PackageError),
-}
-
-fn unit_names() -> String {
-    UNITS.iter().map(|unit| unit.description.name).collect::<Vec<_>>().join(", ")
 }
 
 impl ParameterFile {
@@ -92,9 +45,8 @@ impl ParameterFile {
     }
 
     pub fn write(&self, path: &Path) -> Result<WrittenFile, ParameterFileError> {
-        let text = format!("{self:#}\n");
-        replace_file(path, text.as_bytes())?;
-        Ok(WrittenFile { path: path.to_owned(), size: text.len() })
+        file::write(path.to_owned(), format!("{self:#}\n").as_bytes())
+            .map_err(|source| ParameterFileError::Write { path: path.to_owned(), source })
     }
 
     /// The unit's table and the values, checked by themselves and whether they fit together.
