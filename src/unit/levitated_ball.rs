@@ -1,8 +1,9 @@
 //! What plant and controller of the levitated ball share: quantities and the parameters of ball and coil.
 
-use super::quantity::{
+use super::quantity::Quantity;
+use super::unit_of_measure::{
     AMPERE, KILOGRAM, METRE, METRE_PER_SECOND, METRE_PER_SECOND_SQUARED, NEWTON,
-    NEWTON_SQUARE_METRE_PER_SQUARE_AMPERE, OHM, PER_SECOND, PER_SECOND_SQUARED, Quantity, VOLT, WEBER,
+    NEWTON_SQUARE_METRE_PER_SQUARE_AMPERE, OHM, PER_SECOND, PER_SECOND_SQUARED, VOLT, WEBER,
 };
 use super::variable::{Kind, Variable};
 use crate::plant::levitated_ball::LevitatedBall;

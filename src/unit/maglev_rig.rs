@@ -1,9 +1,10 @@
 //! What plant and controller of the maglev rig share: quantities, sensor and limits of the voltage.
 
-use super::quantity::{AMPERE, NEWTON_SQUARE_METRE_PER_SQUARE_AMPERE};
-use super::quantity::{
-    AMPERE_PER_VOLT, KILOGRAM, METRE, METRE_PER_SECOND, METRE_PER_SECOND_SQUARED, NEWTON, ONE, PER_SECOND,
-    PER_SECOND_CUBED, PER_SECOND_SQUARED, Quantity, VOLT, VOLT_PER_METRE,
+use super::quantity::Quantity;
+use super::unit_of_measure::{
+    AMPERE, AMPERE_PER_VOLT, KILOGRAM, METRE, METRE_PER_SECOND, METRE_PER_SECOND_SQUARED, NEWTON,
+    NEWTON_SQUARE_METRE_PER_SQUARE_AMPERE, ONE, PER_SECOND, PER_SECOND_CUBED, PER_SECOND_SQUARED, VOLT,
+    VOLT_PER_METRE,
 };
 use super::variable::{Kind, Variable};
 use crate::plant::maglev_rig::PositionSensor;

@@ -32,6 +32,7 @@ pub mod start_values;
 pub mod structure;
 pub mod system;
 mod token;
+pub mod unit_of_measure;
 pub mod value;
 pub mod variable;
 pub mod work;

@@ -189,7 +189,7 @@ impl Start {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::unit::quantity::UnitOfMeasure;
+    use crate::unit::unit_of_measure::UnitOfMeasure;
     use crate::unit::variable::{Causality, Kind};
 
     fn unit_of_end(unit: &UnitType, name: &str, causality: Causality) -> &'static UnitOfMeasure {
