@@ -1,7 +1,7 @@
 //! What a unit tells the world about itself.
 
 use super::sampled::SAMPLE_TIME;
-use super::variable::Variable;
+use super::variable::{Variable, row_of};
 use super::{Edition, Token};
 
 /// Static description of an exported unit.
@@ -83,22 +83,5 @@ impl Description {
 }
 
 const fn is_sampled(variables: &[Variable]) -> bool {
-    let mut row = 0;
-    while row < variables.len() {
-        if is_same(variables[row].name, SAMPLE_TIME) {
-            return true;
-        }
-        row += 1;
-    }
-    false
-}
-
-/// Whether two texts are the same, for the compiler.
-const fn is_same(one: &str, other: &str) -> bool {
-    let (one, other) = (one.as_bytes(), other.as_bytes());
-    let mut place = 0;
-    while place < one.len() && place < other.len() && one[place] == other[place] {
-        place += 1;
-    }
-    place == one.len() && place == other.len()
+    row_of(variables, SAMPLE_TIME).is_some()
 }
