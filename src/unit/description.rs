@@ -23,7 +23,7 @@ pub struct Description {
 
 impl Description {
     /// A unit with these variables, of which nothing else is told yet.
-    pub(super) const fn new(name: &'static str, variables: &'static [Variable]) -> Self {
+    pub const fn new(name: &'static str, variables: &'static [Variable]) -> Self {
         let is_sampled = is_sampled(variables);
         let tokens = [
             Token::of(name, variables, Edition::Plain.clock_table(is_sampled)),
@@ -32,18 +32,18 @@ impl Description {
         Self { name, summary: "", documentation: &[], variables, step_size: 0.0, stop_time: 0.0, tokens }
     }
 
-    pub(super) const fn summary(mut self, summary: &'static str) -> Self {
+    pub const fn summary(mut self, summary: &'static str) -> Self {
         self.summary = summary;
         self
     }
 
-    pub(super) const fn documentation(mut self, paragraphs: &'static [&'static str]) -> Self {
+    pub const fn documentation(mut self, paragraphs: &'static [&'static str]) -> Self {
         self.documentation = paragraphs;
         self
     }
 
     /// Suggests a simulation: communication step and end \[s\].
-    pub(super) const fn experiment(mut self, step_size: f64, stop_time: f64) -> Self {
+    pub const fn experiment(mut self, step_size: f64, stop_time: f64) -> Self {
         self.step_size = step_size;
         self.stop_time = stop_time;
         self

@@ -198,6 +198,7 @@ const fn is_same(one: &str, other: &str) -> bool {
 
 /// Builds the static table `VARIABLES` of a unit and a constant per row that holds the row's index, i.e. value reference,
 /// for the module and its parent.
+#[macro_export]
 macro_rules! variable_table {
     ($($index:ident = $variable:expr;)*) => {
         #[allow(non_camel_case_types, clippy::upper_case_acronyms, reason = "rows are named like constants")]
@@ -206,7 +207,7 @@ macro_rules! variable_table {
         $(#[allow(dead_code, reason = "not every row is read by name")]
         pub(super) const $index: usize = Row::$index as usize;)*
         pub(super) const COUNT: usize = Row::Count as usize;
-        pub(super) static VARIABLES: [Variable; COUNT] = [$($variable,)*];
+        pub(super) static VARIABLES: [$crate::unit::variable::Variable; COUNT] = [$($variable,)*];
     };
 }
-pub(super) use variable_table;
+pub use variable_table;

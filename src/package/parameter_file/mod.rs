@@ -28,7 +28,7 @@ use super::{PackageError, WrittenFile, replace_file};
 use crate::causes::printable;
 use crate::unit::start_values::StartValueError;
 use crate::unit::variable::{Kind, Variable};
-use crate::unit::{Description, StartValues, UNITS, UnitError};
+use crate::unit::{Description, StartValues, UnitError, units};
 
 /// Contents of a parameter file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -70,7 +70,7 @@ pub enum ParameterFileError {
 }
 
 fn unit_names() -> String {
-    UNITS.iter().map(|unit| unit.description.name).collect::<Vec<_>>().join(", ")
+    units().map(|unit| unit.description.name).collect::<Vec<_>>().join(", ")
 }
 
 impl ParameterFile {
@@ -99,8 +99,7 @@ impl ParameterFile {
 
     /// The unit's table and the values, checked by themselves and whether they fit together.
     pub fn start_values(&self) -> Result<(&'static Description, StartValues), ParameterFileError> {
-        let unit = UNITS
-            .iter()
+        let unit = units()
             .find(|unit| unit.description.name == self.unit)
             .ok_or_else(|| ParameterFileError::UnknownUnit { name: self.unit.clone() })?;
         let description = unit.description;

@@ -90,11 +90,17 @@ pub trait PlantEquations<const N: usize, const X: usize, const U: usize>:
     fn initial_state<S: Scalar>(values: &[S; N]) -> [S; X];
 
     /// The mode of the initial state.
-    fn initial_mode(values: &[f64; N], state: &[f64; X]) -> Self::Mode;
+    fn initial_mode(values: &[f64; N], state: &[f64; X]) -> Self::Mode {
+        let _ = (values, state);
+        Self::Mode::default()
+    }
 
     /// A number that depends on whatever [`Self::initial_mode`] follows from.
     #[cfg(feature = "tools")]
-    fn cause_of_initial_mode<S: Scalar>(values: &[S; N], state: &[S; X]) -> S;
+    fn cause_of_initial_mode<S: Scalar>(values: &[S; N], state: &[S; X]) -> S {
+        let _ = (values, state);
+        S::from(0.0)
+    }
 
     /// `state` with what a mode forces it to be.
     #[cfg(feature = "tools")]
@@ -160,7 +166,10 @@ pub trait PlantEquations<const N: usize, const X: usize, const U: usize>:
         values: &[f64; N],
         motion: Motion<Self::Mode, X>,
         inputs: [f64; U],
-    ) -> Motion<Self::Mode, X>;
+    ) -> Motion<Self::Mode, X> {
+        let _ = (values, inputs);
+        motion
+    }
 
     /// The motion at the end of a step, where something beside [`Self::advance`] may have moved it.
     fn at_communication_point(values: &[f64; N], motion: Motion<Self::Mode, X>) -> Motion<Self::Mode, X> {
