@@ -52,7 +52,9 @@ pub use magnetic_bearing_controller::MagneticBearingController;
 pub use magnetic_bearing_plant::MagneticBearingPlant;
 pub use persistence::Persistent;
 #[cfg(feature = "tools")]
-pub use registry::{ADDED_SYSTEMS, ADDED_UNITS, Registration};
+pub use registry::Registration;
+#[cfg(feature = "added-units")]
+pub use registry::{ADDED_SYSTEMS, ADDED_UNITS};
 pub use registry::{UnitType, editions, editions_of, units};
 pub use sampled::SampledUnit;
 pub use start_values::StartValues;

@@ -5,7 +5,7 @@ use super::REGISTRATIONS;
 use super::memory::{OutOfMemory, try_boxed};
 #[cfg(feature = "tools")]
 use super::structure::{Dependencies, Structured};
-#[cfg(feature = "tools")]
+#[cfg(feature = "added-units")]
 use super::system::System;
 use super::{Description, Edition, UNITS, Unit};
 
@@ -53,7 +53,9 @@ impl Registration {
 
     /// That of the unit described, if it is one.
     pub fn find(description: &Description) -> Option<&'static Self> {
-        let mut all = REGISTRATIONS.iter().chain(ADDED_UNITS);
+        let mut all = REGISTRATIONS.iter();
+        #[cfg(feature = "added-units")]
+        let mut all = all.by_ref().chain(ADDED_UNITS);
         all.find(|registration| core::ptr::eq(registration.unit.description, description))
     }
 }
@@ -82,19 +84,19 @@ macro_rules! units {
 /// #[distributed_slice(ADDED_UNITS)]
 /// static CART_REGISTRATION: Registration = Registration::of::<Cart>(&CART, include_str!("cart.svg"));
 /// ```
-#[cfg(feature = "tools")]
+#[cfg(feature = "added-units")]
 #[linkme::distributed_slice]
 pub static ADDED_UNITS: [Registration];
 
 /// Loops that the running program adds.
-#[cfg(feature = "tools")]
+#[cfg(feature = "added-units")]
 #[linkme::distributed_slice]
 pub static ADDED_SYSTEMS: [System];
 
 /// All units that instances can be made of.
 pub fn units() -> impl Iterator<Item = &'static UnitType> + Clone {
     let own = UNITS.iter().copied();
-    #[cfg(feature = "tools")]
+    #[cfg(feature = "added-units")]
     let own = own.chain(ADDED_UNITS.iter().map(|added| added.unit));
     own
 }

@@ -60,7 +60,7 @@ pub static SYSTEMS: &[&System] = &[&BEARING, &BALL, &RIG];
 /// All systems, those that the running program adds included.
 pub fn systems() -> impl Iterator<Item = &'static System> + Clone {
     let own = SYSTEMS.iter().copied();
-    #[cfg(feature = "tools")]
+    #[cfg(feature = "added-units")]
     let own = own.chain(super::ADDED_SYSTEMS);
     own
 }
