@@ -34,12 +34,10 @@ def duration(package: Path) -> float:
     return DURATIONS[package.stem]
 
 
-def estimates(structure: SystemStructure) -> set[tuple[str, str]]:
+def estimates(package: Path) -> set[tuple[str, str]]:
     """Outputs that `check_physics` looks at."""
-    stem = structure.element("Plant").removesuffix("Plant")
-    system = {"MagneticBearing": "bearing", "LevitatedBall": "ball", "MaglevRig": "rig"}[stem]
+    structure, pairs = SystemStructure(package), ESTIMATES[package.stem]
     plant, controller = structure.element("Plant"), structure.element("Controller")
-    pairs = ESTIMATES[system]
     return {(plant, "position")} | {(plant, true) for true, _ in pairs} | {(controller, name) for _, name in pairs}
 
 

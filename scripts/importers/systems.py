@@ -37,7 +37,7 @@ class PlainLoop:
         self.step_size = self.structure.step_size
         self.steps = round(duration(package) / self.step_size)
         wires = self.structure.inner_connections
-        self.outputs = sorted({(element, name) for element, name, _, _ in wires} | estimates(self.structure))
+        self.outputs = sorted({(element, name) for element, name, _, _ in wires} | estimates(package))
 
     def rows(
         self, steps: int, passes_start_values: bool, parameters: ParameterValues | None = None

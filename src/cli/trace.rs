@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::error::Error;
 
 use clap::Args;
-use maglev_fmu::unit::system::{SYSTEMS, System};
+use maglev_fmu::unit::system::{System, systems};
 use maglev_fmu::unit::variable::{Causality, Kind, Variable};
 use maglev_fmu::unit::{Silence, Unit};
 
@@ -33,7 +33,7 @@ pub struct Trace {
 
 fn system(name: &str) -> Result<&'static System, String> {
     System::find(name).ok_or_else(|| {
-        let known: Vec<&str> = SYSTEMS.iter().map(|system| system.name).collect();
+        let known: Vec<&str> = systems().map(|system| system.name).collect();
         format!("no such system, expected one of: {}", known.join(", "))
     })
 }

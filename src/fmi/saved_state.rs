@@ -20,7 +20,7 @@ use super::ticking::ClockStates;
 use super::{CommunicationPoint, Instance, Interface, Phase};
 use crate::unit::memory::OutOfMemory;
 use crate::unit::persistence::PersistenceError;
-use crate::unit::{Description, UNITS};
+use crate::unit::{Description, units};
 use core::fmt;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -78,7 +78,7 @@ pub struct TokenName([u8; TOKEN.end - TOKEN.start]);
 
 impl fmt::Display for TokenName {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let known = UNITS.iter().find(|unit| unit.description.token().as_str().as_bytes() == self.0);
+        let known = units().find(|unit| unit.description.token().as_str().as_bytes() == self.0);
         match (known, core::str::from_utf8(&self.0)) {
             (Some(unit), _) => formatter.write_str(unit.description.name),
             (None, Ok(token)) => write!(formatter, "another release or library, token {token}"),

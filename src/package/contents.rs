@@ -50,12 +50,12 @@ pub fn contents<'a>(
     ];
     // FMI 2.0 has an icon of its own; terminals it takes from FMI 3.0 (text of 2.0.5, section 2.3).
     files.extend([
-        ("terminalsAndIcons/icon.png", Cow::Owned(icon_png(name)?)),
-        ("terminalsAndIcons/icon.svg", Cow::Borrowed(icon_svg(name)?.as_bytes())),
+        ("terminalsAndIcons/icon.png", Cow::Owned(icon_png(description)?)),
+        ("terminalsAndIcons/icon.svg", Cow::Borrowed(icon_svg(description)?.as_bytes())),
         ("terminalsAndIcons/terminalsAndIcons.xml", owned(terminals_and_icons(description))),
     ]);
     if form.version == FmiVersion::Two {
-        files.push(("model.png", Cow::Owned(icon_png(name)?)));
+        files.push(("model.png", Cow::Owned(icon_png(description)?)));
     }
     let mut entries: Vec<Entry<'a>> =
         files.into_iter().map(|(path, bytes)| Entry::document(path.to_owned(), bytes)).collect();

@@ -24,11 +24,11 @@ pub enum PackageError {
     SystemStart { system: &'static str, source: StartValueError },
     #[error("cannot compute the reference output of {unit}")]
     ReferenceRun { unit: &'static str, source: UnitError },
-    #[error("unit {unit} has no icon: draw assets/{unit}.svg and list it in src/package/icon.rs")]
+    #[error("unit {unit} is not registered and has no icon")]
     NoIcon { unit: &'static str },
-    #[error("cannot read the icon assets/{unit}.svg")]
+    #[error("cannot read the icon of {unit}")]
     Icon { unit: &'static str, source: resvg::usvg::Error },
-    #[error("cannot draw the icon assets/{unit}.svg: {reason}")]
+    #[error("cannot draw the icon of {unit}: {reason}")]
     DrawIcon { unit: &'static str, reason: String },
     #[error("cannot find this program's own file, next to which the shared library lies")]
     OwnPath { source: std::io::Error },

@@ -23,7 +23,7 @@ pub(super) struct CivilTime {
 }
 
 impl GenerationTime {
-    pub fn from_epoch_seconds(seconds: u32) -> Self {
+    pub const fn from_epoch_seconds(seconds: u32) -> Self {
         Self { seconds }
     }
 

@@ -10,7 +10,7 @@ use object::{BinaryFormat, Object};
 use super::{FmiVersion, PackageError, Platform};
 use crate::file;
 use crate::fmi::function_names;
-use crate::unit::{Edition, Token, UNITS, editions};
+use crate::unit::{Edition, Token, UNITS, editions_of};
 
 /// Name of the library target, which differs from the package's in the dash.
 const LIBRARY_NAME: &str = "maglev_fmu";
@@ -52,7 +52,8 @@ impl Library {
         let tokens = texts_like_tokens(&bytes);
         let is_missing =
             |edition: &Edition, description| !tokens.contains(edition.token(description).as_str().as_bytes());
-        if let Some((unit, _)) = editions().find(|(unit, edition)| is_missing(edition, unit.description)) {
+        let mut editions = editions_of(UNITS.iter().copied());
+        if let Some((unit, _)) = editions.find(|(unit, edition)| is_missing(edition, unit.description)) {
             return Err(PackageError::OtherRelease { path: path.to_owned(), unit: unit.description.name });
         }
         Ok(Self { path: path.to_owned(), platform, bytes })

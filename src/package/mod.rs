@@ -46,4 +46,4 @@ pub use reference_run::{ReferenceRun, Table};
 pub use related_files::{DIRECTORY as RELATED_FILES, INPUT as REFERENCE_INPUT, OUTPUT as REFERENCE_OUTPUT};
 pub use third_party::{PATH as THIRD_PARTY_PATH, ThirdPartyError, third_party};
 
-pub use system_structure::SystemForm;
+pub use system_structure::{SystemForm, contents as system_contents};

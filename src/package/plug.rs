@@ -4,7 +4,7 @@
 //! importer can wire a loop by connecting one plug with the other.
 
 use crate::unit::Description;
-use crate::unit::system::{SYSTEMS, System};
+use crate::unit::system::{System, systems};
 
 /// One end of a wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,7 +26,7 @@ pub struct Plug {
 impl Plug {
     /// The plugs of a unit, one for each loop that it is part of.
     pub fn all_of(description: &Description) -> Vec<Self> {
-        SYSTEMS.iter().filter_map(|system| Self::new(description, system)).collect()
+        systems().filter_map(|system| Self::new(description, system)).collect()
     }
 
     fn new(description: &Description, system: &'static System) -> Option<Self> {
@@ -65,7 +65,7 @@ mod tests {
 
     #[test]
     fn plugs_of_a_loop_match_and_outputs_meet_inputs() {
-        for system in SYSTEMS {
+        for system in systems() {
             let [plant, controller] = [system.plant, system.controller].map(|unit| {
                 let plugs = Plug::all_of(unit.description);
                 plugs.into_iter().find(|plug| plug.system.name == system.name).unwrap()

@@ -96,11 +96,11 @@ fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::unit::UNITS;
+    use crate::unit::units;
 
     #[test]
     fn figures_show_every_real_variable() {
-        for unit in UNITS {
+        for unit in units() {
             let run = ReferenceRun::of(unit.description, crate::unit::StartValues::TABLE).unwrap();
             let text = run_figure(&run);
             resvg::usvg::Tree::from_str(&text, &resvg::usvg::Options::default()).unwrap();

@@ -10,7 +10,7 @@ use super::unique_keys;
 use crate::file::{self, WrittenFile};
 use crate::unit::start_values::StartValueError;
 use crate::unit::variable::{Kind, Variable};
-use crate::unit::{Description, StartValues, UNITS};
+use crate::unit::{Description, StartValues, units};
 
 /// Contents of a parameter file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -51,8 +51,7 @@ impl ParameterFile {
 
     /// The unit's table and the values, checked by themselves and whether they fit together.
     pub fn start_values(&self) -> Result<(&'static Description, StartValues), ParameterFileError> {
-        let unit = UNITS
-            .iter()
+        let unit = units()
             .find(|unit| unit.description.name == self.unit)
             .ok_or_else(|| ParameterFileError::UnknownUnit { name: self.unit.clone() })?;
         let description = unit.description;

@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use crate::causes::printable;
 use crate::unit::start_values::StartValueError;
-use crate::unit::{UNITS, UnitError};
+use crate::unit::{UnitError, units};
 
 /// Why a parameter file was refused.
 #[derive(Debug, Error)]
@@ -35,5 +35,5 @@ pub enum ParameterFileError {
 }
 
 fn unit_names() -> String {
-    UNITS.iter().map(|unit| unit.description.name).collect::<Vec<_>>().join(", ")
+    units().map(|unit| unit.description.name).collect::<Vec<_>>().join(", ")
 }

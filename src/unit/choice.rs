@@ -12,6 +12,7 @@
 ///     }
 /// }
 /// ```
+#[macro_export]
 macro_rules! choice {
     (
         $(#[$attribute:meta])*
@@ -55,7 +56,7 @@ macro_rules! choice {
         }
     };
 }
-pub(super) use choice;
+pub use choice;
 
 #[cfg(test)]
 mod tests {

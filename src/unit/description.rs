@@ -1,7 +1,7 @@
 //! What a unit tells the world about itself.
 
 use super::sampled::SAMPLE_TIME;
-use super::variable::Variable;
+use super::variable::{Variable, row_of};
 use super::{Edition, Token};
 
 /// Static description of an exported unit.
@@ -23,7 +23,7 @@ pub struct Description {
 
 impl Description {
     /// A unit with these variables, of which nothing else is told yet.
-    pub(super) const fn new(name: &'static str, variables: &'static [Variable]) -> Self {
+    pub const fn new(name: &'static str, variables: &'static [Variable]) -> Self {
         let is_sampled = is_sampled(variables);
         let tokens = [
             Token::of(name, variables, Edition::Plain.clock_table(is_sampled)),
@@ -32,18 +32,18 @@ impl Description {
         Self { name, summary: "", documentation: &[], variables, step_size: 0.0, stop_time: 0.0, tokens }
     }
 
-    pub(super) const fn summary(mut self, summary: &'static str) -> Self {
+    pub const fn summary(mut self, summary: &'static str) -> Self {
         self.summary = summary;
         self
     }
 
-    pub(super) const fn documentation(mut self, paragraphs: &'static [&'static str]) -> Self {
+    pub const fn documentation(mut self, paragraphs: &'static [&'static str]) -> Self {
         self.documentation = paragraphs;
         self
     }
 
     /// Suggests a simulation: communication step and end \[s\].
-    pub(super) const fn experiment(mut self, step_size: f64, stop_time: f64) -> Self {
+    pub const fn experiment(mut self, step_size: f64, stop_time: f64) -> Self {
         self.step_size = step_size;
         self.stop_time = stop_time;
         self
@@ -83,22 +83,5 @@ impl Description {
 }
 
 const fn is_sampled(variables: &[Variable]) -> bool {
-    let mut row = 0;
-    while row < variables.len() {
-        if is_same(variables[row].name, SAMPLE_TIME) {
-            return true;
-        }
-        row += 1;
-    }
-    false
-}
-
-/// Whether two texts are the same, for the compiler.
-const fn is_same(one: &str, other: &str) -> bool {
-    let (one, other) = (one.as_bytes(), other.as_bytes());
-    let mut place = 0;
-    while place < one.len() && place < other.len() && one[place] == other[place] {
-        place += 1;
-    }
-    place == one.len() && place == other.len()
+    row_of(variables, SAMPLE_TIME).is_some()
 }

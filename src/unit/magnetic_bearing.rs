@@ -1,8 +1,10 @@
-//! What plant and controller of the magnetic bearing share: the choice of the map, bias and saturation flux.
+//! What plant and controller of the magnetic bearing share: the choice of the map, bias and saturation flux, their loop.
 
 use super::choice::choice;
 use super::quantity::{Enumeration, MAGNETIC_FLUX};
+use super::system::{System, USE_APPLIED_VOLTAGE};
 use super::variable::{Kind, Variable};
+use super::{MAGNETIC_BEARING_CONTROLLER, MAGNETIC_BEARING_PLANT};
 use crate::plant::magnetic_bearing::Map;
 
 choice! {
@@ -34,3 +36,22 @@ pub const fn saturation_flux() -> Variable {
         .range(1e-6, 1.0)
         .describe("Phi_sat, saturation flux; epsilon = 2 bias_flux / saturation_flux")
 }
+
+pub static BEARING: System = System {
+    name: "bearing",
+    plant: &MAGNETIC_BEARING_PLANT,
+    controller: &MAGNETIC_BEARING_CONTROLLER,
+    sensing: &[
+        ("position_measured", "position"),
+        ("velocity", "state.velocity"),
+        ("flux", "state.flux"),
+        ("voltage_measured", "voltage_applied"),
+    ],
+    actuation: &[("voltage", "voltage")],
+    plant_starts: &[],
+    controller_starts: &[USE_APPLIED_VOLTAGE],
+    // With steps twice as long and a master that steps both units at once the loop is lost.
+    longest_step: 1e-3,
+    remark: " The sample time of 1 ms has to be a multiple of the step, as it is of 0.5 ms: otherwise ticks lie within steps \
+        and the observer takes a position for that of a later time, which loses the rotor.",
+};

@@ -1,17 +1,17 @@
 //! What is exported: per unit its variable table, and how plant, observer and law are wired and sampled.
 //! Knows nothing of FMI.
 
-mod choice;
+pub mod choice;
 pub mod continuous;
 pub mod continuous_plant;
-mod controller_choices;
+pub mod controller_choices;
 pub mod description;
 pub mod edition;
 mod end_stop_events;
 mod levitated_ball;
 mod levitated_ball_controller;
 mod levitated_ball_plant;
-mod longest_step;
+pub mod longest_step;
 mod maglev_rig;
 mod maglev_rig_controller;
 mod maglev_rig_plant;
@@ -22,16 +22,19 @@ pub mod memory;
 pub mod persistence;
 
 pub mod quantity;
+#[macro_use]
+mod registry;
 pub mod sample_clock;
 pub mod sampled;
 pub mod sampled_controller;
-mod sensor;
-mod start_delay;
+pub mod sensor;
+pub mod start_delay;
 pub mod start_values;
 #[cfg(feature = "tools")]
 pub mod structure;
 pub mod system;
 mod token;
+pub mod unit_of_measure;
 pub mod value;
 pub mod variable;
 pub mod work;
@@ -47,8 +50,12 @@ pub use maglev_rig_controller::MaglevRigController;
 pub use maglev_rig_plant::MaglevRigPlant;
 pub use magnetic_bearing_controller::MagneticBearingController;
 pub use magnetic_bearing_plant::MagneticBearingPlant;
-use memory::{OutOfMemory, try_boxed};
 pub use persistence::Persistent;
+#[cfg(feature = "tools")]
+pub use registry::Registration;
+#[cfg(feature = "added-units")]
+pub use registry::{ADDED_SYSTEMS, ADDED_UNITS};
+pub use registry::{UnitType, editions, editions_of, units};
 pub use sampled::SampledUnit;
 pub use start_values::StartValues;
 pub use system::System;
@@ -173,40 +180,6 @@ pub const LARGEST_TABLE: usize = 128;
 /// Value reference of the simulation time, the first row of every table.
 pub const TIME: usize = 0;
 
-/// A unit that can be made from nothing but its table.
-#[derive(Debug)]
-pub struct UnitType {
-    pub description: &'static Description,
-    pub create: fn() -> Box<dyn Unit>,
-    /// As `create`, for a library whose host goes on when memory runs out.
-    pub try_create: fn() -> Result<Box<dyn Unit>, OutOfMemory>,
-}
-
-impl UnitType {
-    const fn of<U: Unit + Default + 'static>(description: &'static Description) -> Self {
-        Self {
-            description,
-            create: || Box::new(U::default()),
-            try_create: || Ok(try_boxed("a unit", U::default())?),
-        }
-    }
-}
-
-/// The list of all units.
-macro_rules! units {
-    ($($unit:ident: $model:ty = $module:ident;)*) => {
-        $(pub static $unit: UnitType = UnitType::of::<$model>(&$module::DESCRIPTION);)*
-
-        /// All units the shared library offers.
-        pub static UNITS: &[&UnitType] = &[$(&$unit),*];
-
-        /// How to find their dependencies: apart from the units, so that a shared library can do without.
-        #[cfg(feature = "tools")]
-        static DEPENDENCIES: &[(&UnitType, fn() -> Vec<structure::Dependencies>)] =
-            &[$((&$unit, <$model as structure::Structured>::dependencies)),*];
-    };
-}
-
 units! {
     MAGNETIC_BEARING_PLANT: MagneticBearingPlant = magnetic_bearing_plant;
     MAGNETIC_BEARING_CONTROLLER: MagneticBearingController = magnetic_bearing_controller;
@@ -214,55 +187,4 @@ units! {
     LEVITATED_BALL_CONTROLLER: LevitatedBallController = levitated_ball_controller;
     MAGLEV_RIG_PLANT: MaglevRigPlant = maglev_rig_plant;
     MAGLEV_RIG_CONTROLLER: MaglevRigController = maglev_rig_controller;
-}
-
-/// Every unit in every edition that suits it.
-pub fn editions() -> impl Iterator<Item = (&'static UnitType, Edition)> {
-    let all = UNITS.iter().flat_map(|unit| Edition::ALL.map(|edition| (*unit, edition)));
-    all.filter(|(unit, edition)| edition.suits(unit.description))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use variable::{Causality, Kind};
-
-    #[test]
-    fn tables_are_consistent() {
-        for unit in UNITS {
-            let variables = unit.description.variables;
-            assert!(variables.len() <= LARGEST_TABLE, "{}", unit.description.name);
-            assert_eq!(variables[TIME].causality, Causality::Independent, "{}", unit.description.name);
-            for (reference, variable) in variables.iter().enumerate() {
-                let name = variable.name;
-                assert_eq!(
-                    unit.description.find(name).map(|(found, _)| found),
-                    Some(reference),
-                    "{name} twice"
-                );
-                assert!(!variable.description.is_empty(), "{name} has no description");
-                assert!(variable.is_calculated() || variable.check(variable.start).is_ok(), "{name} start");
-                for source in variable.initially_from {
-                    assert!(unit.description.find(source).is_some(), "{name}: unknown {source}");
-                }
-                if matches!(variable.kind, Kind::Integer) && !variable.is_calculated() {
-                    assert!(
-                        variable.range.0 >= i32::MIN.into() && variable.range.1 <= i32::MAX.into(),
-                        "{name}"
-                    );
-                }
-            }
-            let mut made = (unit.create)();
-            assert_eq!(made.values().len(), variables.len());
-            assert_eq!(made.sampled().is_some(), unit.description.is_sampled(), "{}", unit.description.name);
-        }
-    }
-
-    #[test]
-    fn tokens_differ() {
-        let tokens: Vec<_> = editions().map(|(unit, edition)| edition.token(unit.description)).collect();
-        for (index, token) in tokens.iter().enumerate() {
-            assert!(!tokens[..index].contains(token), "{token:?}");
-        }
-    }
 }

@@ -1,45 +1,9 @@
-//! Physical units and quantities of exported variables.
+//! Quantities: what exported variables measure, and choices between named items.
 
-/// Unit with its exponents of the SI base units and the unit tools should display.
-#[derive(Debug)]
-pub struct UnitOfMeasure {
-    pub name: &'static str,
-    /// Exponents of kg, m, s, A.
-    pub exponents: [i8; 4],
-    /// Display unit: name and how many of it make one of this unit.
-    pub display: Option<(&'static str, f64)>,
-}
-
-pub static METRE: UnitOfMeasure =
-    UnitOfMeasure { name: "m", exponents: [0, 1, 0, 0], display: Some(("mm", 1e3)) };
-pub static METRE_PER_SECOND: UnitOfMeasure =
-    UnitOfMeasure { name: "m/s", exponents: [0, 1, -1, 0], display: Some(("mm/s", 1e3)) };
-pub static METRE_PER_SECOND_SQUARED: UnitOfMeasure =
-    UnitOfMeasure { name: "m/s2", exponents: [0, 1, -2, 0], display: None };
-pub static WEBER: UnitOfMeasure =
-    UnitOfMeasure { name: "Wb", exponents: [1, 2, -2, -1], display: Some(("mWb", 1e3)) };
-pub static VOLT: UnitOfMeasure = UnitOfMeasure { name: "V", exponents: [1, 2, -3, -1], display: None };
-pub static VOLT_PER_METRE: UnitOfMeasure =
-    UnitOfMeasure { name: "V/m", exponents: [1, 1, -3, -1], display: None };
-pub static VOLT_SECOND_PER_METRE: UnitOfMeasure =
-    UnitOfMeasure { name: "V.s/m", exponents: [1, 1, -2, -1], display: None };
-pub static PER_SECOND: UnitOfMeasure = UnitOfMeasure { name: "1/s", exponents: [0, 0, -1, 0], display: None };
-pub static PER_SECOND_SQUARED: UnitOfMeasure =
-    UnitOfMeasure { name: "1/s2", exponents: [0, 0, -2, 0], display: None };
-pub static PER_SECOND_CUBED: UnitOfMeasure =
-    UnitOfMeasure { name: "1/s3", exponents: [0, 0, -3, 0], display: None };
-pub static KILOGRAM: UnitOfMeasure =
-    UnitOfMeasure { name: "kg", exponents: [1, 0, 0, 0], display: Some(("g", 1e3)) };
-pub static NEWTON: UnitOfMeasure =
-    UnitOfMeasure { name: "N", exponents: [1, 1, -2, 0], display: Some(("mN", 1e3)) };
-pub static AMPERE: UnitOfMeasure = UnitOfMeasure { name: "A", exponents: [0, 0, 0, 1], display: None };
-pub static AMPERE_PER_VOLT: UnitOfMeasure =
-    UnitOfMeasure { name: "A/V", exponents: [-1, -2, 3, 2], display: None };
-pub static OHM: UnitOfMeasure = UnitOfMeasure { name: "Ohm", exponents: [1, 2, -3, -2], display: None };
-pub static NEWTON_SQUARE_METRE_PER_SQUARE_AMPERE: UnitOfMeasure =
-    UnitOfMeasure { name: "N.m2/A2", exponents: [1, 3, -2, -2], display: None };
-pub static SECOND: UnitOfMeasure = UnitOfMeasure { name: "s", exponents: [0, 0, 1, 0], display: None };
-pub static ONE: UnitOfMeasure = UnitOfMeasure { name: "1", exponents: [0, 0, 0, 0], display: None };
+use super::unit_of_measure::{
+    METRE, METRE_PER_SECOND, METRE_PER_SECOND_SQUARED, ONE, PER_SECOND, PER_SECOND_SQUARED, SECOND,
+    UnitOfMeasure, VOLT, VOLT_PER_METRE, VOLT_SECOND_PER_METRE, WEBER,
+};
 
 /// Type definition of a real variable: what is measured, in which unit, and how large it usually is.
 #[derive(Debug)]

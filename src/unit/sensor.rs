@@ -7,7 +7,7 @@
 
 use super::UnitError;
 use super::continuous::Solver;
-use super::quantity::DURATION;
+use super::quantity::{DURATION, Quantity};
 use super::sample_clock::SampleClock;
 use super::variable::{Kind, Variable};
 use super::work::Load;
@@ -26,8 +26,73 @@ const COST_OF_READING: f64 = 60e-9;
 
 const NAME: &str = "sensor.sample_time";
 
-/// Row of the sample time.
-pub(super) const fn sample_time() -> Variable {
+/// The variables of a plant's sensor, declared with [`sensor_variables!`].
+#[derive(Clone, Copy, Debug)]
+pub struct SensorVariables {
+    /// An output.
+    pub reading: Variable,
+    /// Standard deviation of the white noise.
+    pub noise: Variable,
+    pub resolution: Variable,
+    pub sample_time: Variable,
+    /// Of the random numbers.
+    pub seed: Variable,
+}
+
+impl SensorVariables {
+    /// A sensor that reads `reading`; what is random or rounded is an `error`, at most `largest_error` in size.
+    pub const fn new(
+        reading: (&'static str, &'static Quantity, &'static str),
+        (error, largest_error): (&'static Quantity, f64),
+        [noise, resolution, seed]: [&'static str; 3],
+    ) -> Self {
+        let (name, quantity, description) = reading;
+        Self {
+            reading: Variable::output(name, quantity).describe(description),
+            noise: Variable::tunable("sensor.noise", Kind::Real(error), 0.0)
+                .range(0.0, largest_error)
+                .describe(noise),
+            resolution: Variable::tunable("sensor.resolution", Kind::Real(error), 0.0)
+                .range(0.0, largest_error)
+                .describe(resolution),
+            sample_time: sample_time(),
+            seed: Variable::parameter("sensor.seed", Kind::Integer, 1.0)
+                .range(0.0, i32::MAX as f64)
+                .describe(seed),
+        }
+    }
+}
+
+/// The variables of a sensor from what differs from plant to plant.
+#[macro_export]
+macro_rules! sensor_variables {
+    (
+        reads $name:literal, $quantity:expr, $description:literal, ideally $ideal:literal;
+        with errors $error:expr, up to $largest_error:literal, of $sensor:literal;
+        seeds $noise:literal;
+    ) => {
+        $crate::unit::sensor::SensorVariables::new(
+            (
+                $name,
+                $quantity,
+                concat!(
+                    $description,
+                    ", one reading per step or per sensor.sample_time; without the latter in model exchange the ",
+                    $ideal
+                ),
+            ),
+            ($error, $largest_error),
+            [
+                concat!("Standard deviation of ", $sensor, "'s white noise, per reading"),
+                concat!("Step of ", $sensor, "'s output, 0 for none"),
+                concat!("Seed of ", $noise, " noise; the same seed gives the same run on every platform"),
+            ],
+        )
+    };
+}
+pub use sensor_variables;
+
+const fn sample_time() -> Variable {
     Variable::parameter(NAME, Kind::Real(&DURATION), 0.0).range(0.0, 1e3).describe(
         "Time between readings of the sensor, which lie at its multiples, 1e-6 s or more; 0 for a reading at each \
          communication point, in model exchange for the value in continuous time, without noise and resolution",

@@ -2,7 +2,7 @@
 
 use super::sampled_controller::{ObserverAndLaw, SampledController};
 use super::variable::Variable;
-use super::{DEPENDENCIES, Description};
+use super::{Description, Registration};
 
 /// How a known enters the equation of an unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -46,9 +46,9 @@ impl<C: ObserverAndLaw<N>, const N: usize> Structured for SampledController<C, N
 }
 
 impl Description {
-    /// Dependencies per row of the table, found anew at each call; none if this is no unit of this library.
+    /// Dependencies per row of the table, found anew at each call; none if this is the description of no unit.
     pub fn dependencies(&self) -> Vec<Dependencies> {
-        let own = DEPENDENCIES.iter().find(|(unit, _)| core::ptr::eq(unit.description, self));
-        own.map(|(_, find)| find()).unwrap_or_else(|| vec![Dependencies::default(); self.variables.len()])
+        let unknown = || vec![Dependencies::default(); self.variables.len()];
+        Registration::find(self).map_or_else(unknown, |unit| (unit.dependencies)())
     }
 }

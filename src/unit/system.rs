@@ -1,12 +1,11 @@
 //! Which plant and which controller belong together, and how they are wired.
 
-use super::maglev_rig::OPERATING_SENSOR_VOLTAGE;
+pub use super::levitated_ball::BALL;
+pub use super::maglev_rig::RIG;
+pub use super::magnetic_bearing::BEARING;
 use super::start_values::{StartValueError, StartValues};
 use super::variable::Kind;
-use super::{
-    Description, LEVITATED_BALL_CONTROLLER, LEVITATED_BALL_PLANT, MAGLEV_RIG_CONTROLLER, MAGLEV_RIG_PLANT,
-    MAGNETIC_BEARING_CONTROLLER, MAGNETIC_BEARING_PLANT, UnitType,
-};
+use super::{Description, UnitType};
 
 /// A plant with its controller. All wires carry reals.
 #[derive(Debug)]
@@ -23,6 +22,8 @@ pub struct System {
     pub plant_starts: &'static [(&'static str, Start)],
     /// The same of the controller, which also waits for the first values and refuses steps that are too long.
     pub controller_starts: &'static [(&'static str, Start)],
+    /// Longest communication step that the controller accepts in a package \[s\], with which the loop is sure to hold.
+    pub longest_step: f64,
     /// What else is to be known of these start values; begins with a space.
     pub remark: &'static str,
 }
@@ -48,83 +49,26 @@ pub enum Start {
 }
 
 /// Masters of packages step both units at once, so that the command acts a step later.
-const HEARS_APPLIED_VOLTAGE: (&str, Start) = ("observer.voltage_source", Start::Item("applied"));
+pub const USE_APPLIED_VOLTAGE: (&str, Start) = ("observer.voltage_source", Start::Item("applied"));
 
 /// Communication steps that a controller waits for the first values, which are zeros in some masters.
 const STEPS_TO_THE_FIRST_VALUES: f64 = 1.0;
 
-/// Longest communication step in a package \[s\]. With steps twice as long and a master that steps both units at once
-/// all three loops are lost.
-const LONGEST_STEP: f64 = 1e-3;
-
-pub static BEARING: System = System {
-    name: "bearing",
-    plant: &MAGNETIC_BEARING_PLANT,
-    controller: &MAGNETIC_BEARING_CONTROLLER,
-    sensing: &[
-        ("position_measured", "position"),
-        ("velocity", "state.velocity"),
-        ("flux", "state.flux"),
-        ("voltage_measured", "voltage_applied"),
-    ],
-    actuation: &[("voltage", "voltage")],
-    plant_starts: &[],
-    controller_starts: &[HEARS_APPLIED_VOLTAGE],
-    remark: " The sample time of 1 ms has to be a multiple of the step, as it is of 0.5 ms: otherwise ticks lie within steps \
-        and the observer takes a position for that of a later time, which loses the rotor.",
-};
-
-pub static BALL: System = System {
-    name: "ball",
-    plant: &LEVITATED_BALL_PLANT,
-    controller: &LEVITATED_BALL_CONTROLLER,
-    sensing: &[
-        ("current_measured", "current"),
-        ("position", "state.position"),
-        ("velocity", "state.velocity"),
-        ("flux", "state.flux"),
-        ("voltage_measured", "voltage_applied"),
-    ],
-    actuation: &[("voltage", "voltage")],
-    plant_starts: &[],
-    // The estimator of the paper needs a moving reference; in a package the reference rests until a tool drives it.
-    controller_starts: &[HEARS_APPLIED_VOLTAGE, ("observer.kind", Start::Item("polynomial_newton"))],
-    remark: " The observer is polynomial_newton, which needs no motion; the paper's, drem, needs a moving reference.",
-};
-
-/// The packaged rig's sensor is adjusted to read 0 V at the operating point, so that a wire at zero means no motion
-/// and an open reference keeps the ball where it is.
-const SENSOR_SHIFT: f64 = -OPERATING_SENSOR_VOLTAGE;
-
-pub static RIG: System = System {
-    name: "rig",
-    plant: &MAGLEV_RIG_PLANT,
-    controller: &MAGLEV_RIG_CONTROLLER,
-    sensing: &[("sensor_voltage_measured", "sensor_voltage"), ("voltage_measured", "voltage_applied")],
-    actuation: &[("voltage", "voltage")],
-    plant_starts: &[
-        ("sensor_offset", Start::Shifted(SENSOR_SHIFT)),
-        ("sensor.minimum", Start::Shifted(SENSOR_SHIFT)),
-        ("sensor.maximum", Start::Shifted(SENSOR_SHIFT)),
-    ],
-    controller_starts: &[
-        HEARS_APPLIED_VOLTAGE,
-        ("sensor_offset", Start::Shifted(SENSOR_SHIFT)),
-        ("sensor_voltage", Start::Shifted(SENSOR_SHIFT)),
-        ("reference", Start::Shifted(SENSOR_SHIFT)),
-        // With the printed one, of the wrong sign, the estimate is off as soon as the voltage moves.
-        ("observer.input_gain", Start::SameAs("controller.input_gain")),
-    ],
-    remark: " The sensor is adjusted to read 0 V at 9 mm, where a reference of 0 V keeps the ball.",
-};
-
-/// All systems, in the order of their units.
+/// All systems of the library's own units, in the order of these.
 pub static SYSTEMS: &[&System] = &[&BEARING, &BALL, &RIG];
+
+/// All systems, those that the running program adds included.
+pub fn systems() -> impl Iterator<Item = &'static System> + Clone {
+    let own = SYSTEMS.iter().copied();
+    #[cfg(feature = "added-units")]
+    let own = own.chain(super::ADDED_SYSTEMS);
+    own
+}
 
 impl System {
     /// The system called `name`.
     pub fn find(name: &str) -> Option<&'static Self> {
-        SYSTEMS.iter().copied().find(|system| system.name == name)
+        systems().find(|system| system.name == name)
     }
 
     /// All wires: what the controller reads, then what acts on the plant.
@@ -163,7 +107,7 @@ impl System {
             values.set(description, name, number.unwrap_or(f64::NAN))?;
         }
         if is(self.controller) {
-            values.set(description, "longest_step", LONGEST_STEP)?;
+            values.set(description, "longest_step", self.longest_step)?;
             values.set(description, "start_delay", STEPS_TO_THE_FIRST_VALUES * self.step_size())?;
         }
         Ok(values)
@@ -189,7 +133,7 @@ impl Start {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::unit::quantity::UnitOfMeasure;
+    use crate::unit::unit_of_measure::UnitOfMeasure;
     use crate::unit::variable::{Causality, Kind};
 
     fn unit_of_end(unit: &UnitType, name: &str, causality: Causality) -> &'static UnitOfMeasure {
@@ -222,8 +166,8 @@ mod tests {
                 let (reference, variable) = unit.description.find(name).unwrap();
                 (system.start_values(unit.description).unwrap().of(reference, variable), variable.kind)
             };
-            let Start::Item(item) = HEARS_APPLIED_VOLTAGE.1 else { panic!("an item") };
-            let (number, Kind::Enumeration(enumeration)) = value(system.controller, HEARS_APPLIED_VOLTAGE.0)
+            let Start::Item(item) = USE_APPLIED_VOLTAGE.1 else { panic!("an item") };
+            let (number, Kind::Enumeration(enumeration)) = value(system.controller, USE_APPLIED_VOLTAGE.0)
             else {
                 panic!("an enumeration")
             };

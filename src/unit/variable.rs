@@ -167,8 +167,38 @@ impl Variable {
     }
 }
 
+/// Row of the variable called `name`, for the compiler.
+pub const fn row_of(variables: &[Variable], name: &str) -> Option<usize> {
+    let mut row = 0;
+    while row < variables.len() {
+        if is_same(variables[row].name, name) {
+            return Some(row);
+        }
+        row += 1;
+    }
+    None
+}
+
+/// As [`row_of`], of a variable that there has to be: what computes with it does not compile otherwise.
+pub const fn required_row(variables: &[Variable], name: &str) -> usize {
+    match row_of(variables, name) {
+        Some(row) => row,
+        None => panic!("the table lacks a variable that every unit of its kind has"),
+    }
+}
+
+const fn is_same(one: &str, other: &str) -> bool {
+    let (one, other) = (one.as_bytes(), other.as_bytes());
+    let mut place = 0;
+    while place < one.len() && place < other.len() && one[place] == other[place] {
+        place += 1;
+    }
+    place == one.len() && place == other.len()
+}
+
 /// Builds the static table `VARIABLES` of a unit and a constant per row that holds the row's index, i.e. value reference,
 /// for the module and its parent.
+#[macro_export]
 macro_rules! variable_table {
     ($($index:ident = $variable:expr;)*) => {
         #[allow(non_camel_case_types, clippy::upper_case_acronyms, reason = "rows are named like constants")]
@@ -177,7 +207,7 @@ macro_rules! variable_table {
         $(#[allow(dead_code, reason = "not every row is read by name")]
         pub(super) const $index: usize = Row::$index as usize;)*
         pub(super) const COUNT: usize = Row::Count as usize;
-        pub(super) static VARIABLES: [Variable; COUNT] = [$($variable,)*];
+        pub(super) static VARIABLES: [$crate::unit::variable::Variable; COUNT] = [$($variable,)*];
     };
 }
-pub(super) use variable_table;
+pub use variable_table;

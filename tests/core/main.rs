@@ -6,3 +6,4 @@ mod bearing;
 mod limits;
 mod packaged_loops;
 mod rig;
+mod tables;

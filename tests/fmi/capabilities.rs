@@ -9,7 +9,7 @@ use maglev_fmu::fmi::fmi2::*;
 use maglev_fmu::fmi::fmi3::types::fmi3Boolean;
 use maglev_fmu::fmi::fmi3::*;
 use maglev_fmu::package::Capabilities;
-use maglev_fmu::unit::{Edition, UNITS, editions};
+use maglev_fmu::unit::{Edition, editions, units};
 
 use super::harness::clocked::{Choices, co_simulation_of};
 use super::harness::{Component, OK, Phase, Recorder, Standard, token};
@@ -256,7 +256,7 @@ fn flags_of_fmi2_tell_the_truth() {
             },
         ),
     ];
-    for unit in UNITS {
+    for unit in units() {
         let can = Capabilities::of(unit.description, Edition::Plain);
         for (flag, declared, probe) in flags {
             let name = unit.description.name;
@@ -267,7 +267,7 @@ fn flags_of_fmi2_tell_the_truth() {
 
 #[test]
 fn model_exchange_is_offered_where_it_is_declared() {
-    for unit in UNITS {
+    for unit in units() {
         let token = token(unit.description.name, Edition::Plain);
         let (name, token) = (c"x".as_ptr(), token.as_ptr());
         let functions = fmi2CallbackFunctions {

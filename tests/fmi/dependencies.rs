@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use maglev_fmu::unit::UNITS;
+use maglev_fmu::unit::units;
 use maglev_fmu::unit::variable::{Causality, Kind, Variability, Variable};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
@@ -100,7 +100,7 @@ fn initial_unknowns(component: &Component) -> Vec<u32> {
 
 #[test]
 fn initial_values_follow_from_what_is_declared() {
-    for unit in UNITS {
+    for unit in units() {
         let name = unit.description.name;
         let mut random = Pcg32::seed_from_u64(1);
         let mut moved = Moved::new();
@@ -184,7 +184,7 @@ fn declared(component: &Component, of: impl Fn(&Variable) -> bool) -> Moved {
 
 #[test]
 fn at_a_communication_point_outputs_follow_from_what_is_declared() {
-    for unit in UNITS {
+    for unit in units() {
         let name = unit.description.name;
         let (mut random, mut moved) = (Pcg32::seed_from_u64(2), Moved::new());
         let is_known = |row: &Variable| {

@@ -74,6 +74,8 @@ fn a_tick_runs_when_its_clock_was_activated() {
     for unit in sampled_units() {
         let component = initialised(unit, 0.0);
         let [tick, ticked] = component.clocks();
+        // Some outputs start from the inputs, so that the first tick would change nothing.
+        move_inputs(&component, 0);
         let before = component.snapshot();
         let clocks = || [tick, ticked].map(|clock| component.get_clock(clock));
         assert_eq!(clocks(), [(OK, 0); 2]);
@@ -88,11 +90,7 @@ fn a_tick_runs_when_its_clock_was_activated() {
         let update = component.end_event_iteration();
         assert_eq!(update, Update { is_unfinished: true, ..idle });
         assert_eq!(clocks(), [(OK, 0); 2], "the unit deactivates its clocks");
-        assert_eq!(
-            component.snapshot() != before,
-            unit != "MaglevRigController",
-            "which starts from its inputs"
-        );
+        assert_ne!(component.snapshot(), before, "{unit}");
         // "Periodic clocks must not be active for more than one call of fmi3UpdateDiscreteStates per Event Mode."
         let after = component.snapshot();
         component.recorder.clear();

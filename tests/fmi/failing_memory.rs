@@ -13,7 +13,7 @@ use maglev_fmu::fmi::fmi2::types::{
 use maglev_fmu::fmi::fmi2::*;
 use maglev_fmu::fmi::fmi3::*;
 use maglev_fmu::unit::variable::Kind;
-use maglev_fmu::unit::{Description, Edition, StartValues, UNITS};
+use maglev_fmu::unit::{Description, Edition, StartValues, UNITS, units};
 
 use super::allocator::{blocks, with_memory_for};
 use super::harness::{BOTH, Component, ERROR, OK, Standard};
@@ -174,7 +174,7 @@ fn component(way: Way, unit: &'static Description, handle: *mut c_void) -> Compo
 
 /// Every unit, every way to it.
 fn all_ways() -> impl Iterator<Item = (&'static Description, Way)> {
-    let units = UNITS.iter().map(|unit| unit.description);
+    let units = units().map(|unit| unit.description);
     units.flat_map(|unit| WAYS.into_iter().filter(|way| way.is_open_to(unit)).map(move |way| (unit, way)))
 }
 
@@ -256,7 +256,7 @@ fn every_allocation_of_saved_states_may_fail() {
 
 #[test]
 fn nothing_else_needs_memory() {
-    for unit in UNITS.iter().map(|unit| unit.description) {
+    for unit in units().map(|unit| unit.description) {
         for standard in BOTH {
             let way = match standard {
                 Standard::Fmi2 => Way::CoSimulation2,

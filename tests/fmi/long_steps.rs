@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use maglev_fmu::unit::UNITS;
+use maglev_fmu::unit::units;
 
 use super::harness::clocked::{Choices, go_on, sampled_units};
 use super::harness::{BOTH, Component, OK};
@@ -115,7 +115,7 @@ fn everywhere_in_its_ranges_a_plant_takes_a_step_of_a_microsecond() {
 
 #[test]
 fn every_unit_has_a_bound_and_the_suggested_step_is_far_below() {
-    for unit in UNITS {
+    for unit in units() {
         let description = unit.description;
         let component = Component::new(BOTH[0], description.name);
         component.initialise(0.0);

@@ -1,10 +1,12 @@
 //! The C boundary from outside: the exported functions of both standards, called as an importer calls them.
 
+// Adds units that the library does not have.
+use maglev_fmu_test as _;
+
 mod allocations;
 mod allocator;
 mod allowed_calls_fmi2;
 mod allowed_calls_fmi3;
-#[cfg(feature = "tools")]
 mod capabilities;
 mod concurrency;
 mod dependencies;
@@ -33,9 +35,7 @@ mod sensor_readings;
 mod standard;
 mod steps;
 mod stop_time;
-#[cfg(feature = "tools")]
 mod symbols;
-#[cfg(feature = "tools")]
 mod throwing;
 mod tick_modes;
 mod ticks;

@@ -1,7 +1,7 @@
 //! Model exchange: an importer that integrates the plants gets what they compute themselves, discrete values change
 //! at events only, and calls are refused where the standards forbid them.
 
-use maglev_fmu::unit::variable::{Causality, Variability};
+use maglev_fmu::unit::variable::{Causality, Kind, Variability};
 
 use super::harness::{CONTROLLER, Component, DISCARD, ERROR, OK, Standard, plants};
 
@@ -26,12 +26,9 @@ fn runge_kutta(component: &Component, time: f64, h: f64) {
 /// Inputs of a plant with values that move it, without contact for a few milliseconds.
 fn excite(component: &Component) {
     for row in component.description.variables.iter().filter(|row| row.causality == Causality::Input) {
-        let value = match (component.description.name, row.name) {
-            ("MagneticBearingPlant", _) => 30.0,
-            (_, "force") => 0.01,
-            _ => 0.5,
-        };
-        assert_eq!(component.set(row.name, value), OK);
+        let Kind::Real(quantity) = row.kind else { panic!("{} is not real", row.name) };
+        let share = if row.name == "force" { 0.01 } else { 0.3 };
+        assert_eq!(component.set(row.name, share * quantity.nominal), OK);
     }
 }
 

@@ -2,7 +2,7 @@
 //! can be computed, an instance takes its own state.
 
 use maglev_fmu::fmi::fmi2::fmi2SetRealInputDerivatives;
-use maglev_fmu::unit::UNITS;
+use maglev_fmu::unit::units;
 use maglev_fmu::unit::variable::{Causality, Kind, Variability, Variable};
 use proptest::prelude::*;
 use proptest::sample::select;
@@ -128,7 +128,7 @@ fn round_trip(component: &Component, context: &dyn core::fmt::Debug) -> Result<(
 
 #[test]
 fn every_state_that_is_reached_is_taken_back() {
-    for unit in UNITS.iter().map(|unit| unit.description) {
+    for unit in units().map(|unit| unit.description) {
         let makes = BOTH.into_iter().flat_map(|standard| {
             let stepped = move || Component::with_logging(standard, unit.name, true);
             let exchanged = move || Component::exchanged(standard, unit.name);
@@ -167,7 +167,7 @@ fn every_state_that_is_reached_is_taken_back() {
 
 #[test]
 fn a_force_that_would_leave_its_range_is_refused_at_the_step() {
-    for unit in UNITS.iter().map(|unit| unit.description).filter(|unit| unit.offers_model_exchange()) {
+    for unit in units().map(|unit| unit.description).filter(|unit| unit.offers_model_exchange()) {
         for row in unit.variables.iter().filter(|row| row.causality == Causality::Input) {
             let component = Component::new(Standard::Fmi2, unit.name);
             component.initialise(0.0);

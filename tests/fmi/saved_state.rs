@@ -4,7 +4,7 @@ use core::ptr::null_mut;
 use std::ops::Range;
 
 use maglev_fmu::fmi::LONGEST_SAVED_STATE;
-use maglev_fmu::unit::UNITS;
+use maglev_fmu::unit::units;
 use maglev_fmu::unit::variable::{Causality, Kind, Variability, Variable};
 use rand_core::Rng;
 use rand_pcg::Pcg32;
@@ -48,8 +48,8 @@ impl Choice {
     }
 }
 
-fn units() -> impl Iterator<Item = &'static str> {
-    UNITS.iter().map(|unit| unit.description.name)
+fn names() -> impl Iterator<Item = &'static str> {
+    units().map(|unit| unit.description.name)
 }
 
 fn is_input(variable: &Variable) -> bool {
@@ -125,9 +125,9 @@ fn configured(standard: Standard, unit: &str, configuration: &[(u32, f64)]) -> C
 /// standard, before and after initialisation, with detours between the two.
 #[test]
 fn ten_thousand_interrupted_runs_never_differ_from_the_uninterrupted_ones() {
-    let sequences = 10_000 / UNITS.len() as u64 + 1;
+    let sequences = 10_000 / units().count() as u64 + 1;
     let (mut restored, mut steps, mut longest) = (0, 0, 0);
-    for unit in units() {
+    for unit in names() {
         for sequence in 0..sequences {
             let mut choice = Choice::new(sequence);
             let (configuration, moves) = plan(unit, &mut choice);
@@ -187,7 +187,7 @@ fn ten_thousand_interrupted_runs_never_differ_from_the_uninterrupted_ones() {
 
 #[test]
 fn every_configuration_fits_into_four_kibibytes() {
-    for unit in units() {
+    for unit in names() {
         let (mut shortest, mut longest) = (usize::MAX, 0);
         let mut choice = Choice::new(99);
         for _ in 0..300 {
@@ -211,7 +211,7 @@ fn every_configuration_fits_into_four_kibibytes() {
 
 #[test]
 fn a_state_brings_its_phase_with_it() {
-    for unit in units() {
+    for unit in names() {
         for (from, to) in BOTH.into_iter().flat_map(|from| BOTH.map(|to| (from, to))) {
             for saved in PHASES {
                 let bytes = Component::in_phase(from, unit, saved).saved_bytes();
@@ -309,7 +309,7 @@ fn assert_no_state(component: &Component, bytes: &[u8], said: &[&str]) {
 
 #[test]
 fn damaged_bytes_are_refused() {
-    for unit in units() {
+    for unit in names() {
         let component = Component::in_phase(Standard::Fmi3, unit, Phase::Step);
         let bytes = component.saved_bytes();
         for bit in 0..8 * bytes.len() {
@@ -331,9 +331,9 @@ fn damaged_bytes_are_refused() {
 #[test]
 fn foreign_bytes_are_refused_by_name() {
     for standard in BOTH {
-        for unit in units() {
+        for unit in names() {
             let component = Component::in_phase(standard, unit, Phase::Step);
-            for other in units().filter(|other| *other != unit) {
+            for other in names().filter(|other| *other != unit) {
                 let foreign = Component::in_phase(standard, other, Phase::Step);
                 let said = format!("a state of {other}: expected {unit}");
                 assert_no_state(&component, &foreign.saved_bytes(), &[&said]);
@@ -368,7 +368,7 @@ fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
 #[test]
 fn contents_that_lie_do_no_harm() {
     let (mut accepted, mut refused) = (0, 0);
-    for unit in units() {
+    for unit in names() {
         let mut choice = Choice::new(5);
         for round in 0..40 {
             let (configuration, _) = plan(unit, &mut choice);

@@ -1,23 +1,30 @@
 //! Sensors with a sample time: readings lie at its multiples, one number of the noise each, whoever solves the unit and
 //! however the time is cut. Without one, an importer that integrates a plant sees the value itself.
 
-use super::harness::{BOTH, Component, OK, Standard, plants};
+use maglev_fmu::unit::Description;
+use maglev_fmu::unit::variable::{Kind, Variable};
+
+use super::harness::{BOTH, Component, OK, Standard, description, plants};
 
 const SAMPLE_TIME: f64 = 1e-3;
 
 /// What the sensor of a plant reads, and the reading.
 fn sensor(unit: &str) -> (&'static str, &'static str) {
-    match unit {
-        "MagneticBearingPlant" => ("position", "position_measured"),
-        "LevitatedBallPlant" => ("current", "current_measured"),
-        _ => ("sensor_voltage", "sensor_voltage_measured"),
-    }
+    let reading = reading(description(unit));
+    (reading.name.strip_suffix("_measured").unwrap(), reading.name)
+}
+
+/// The output that is noisy.
+fn reading(description: &Description) -> &'static Variable {
+    let (noise, _) = description.find("sensor.noise").unwrap();
+    let mut rows = description.variables.iter().zip(description.dependencies());
+    rows.find(|(_, follows)| follows.initially.contains(&noise)).unwrap().0
 }
 
 /// A plant that moves, with a noisy sensor.
 fn prepare(component: &Component, sample_time: f64) {
-    let noise = if component.description.name == "MagneticBearingPlant" { 1e-6 } else { 1e-3 };
-    assert_eq!(component.set("sensor.noise", noise), OK);
+    let Kind::Real(quantity) = reading(component.description).kind else { panic!("a real number") };
+    assert_eq!(component.set("sensor.noise", 1e-3 * quantity.nominal), OK);
     assert_eq!(component.set("sensor.sample_time", sample_time), OK);
     assert_eq!(component.set("initial.velocity", 0.01), OK);
     component.initialise(0.0);

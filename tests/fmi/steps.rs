@@ -48,9 +48,11 @@ fn a_step_ends_at_a_finite_time() {
         let component = Component::new(standard, unit);
         if component.description.is_sampled() {
             // So far away no tick can be counted.
+            let (_, sample_time) = component.description.find("sample_time").unwrap();
             assert_eq!(component.enter_initialization(start, None), OK);
             component.recorder.clear();
-            let said = ["ExitInitializationMode", "startTime = 1.7e308 s", "to count ticks every 0.001 s"];
+            let ticks = format!("to count ticks every {} s", sample_time.start);
+            let said = ["ExitInitializationMode", "startTime = 1.7e308 s", &ticks];
             component.assert_refused(component.exit_initialization(), &said);
             continue;
         }

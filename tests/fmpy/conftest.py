@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from bearing import Loop
 from cosimulation import Fmu
-from packages import BEARING_UNITS, FMI_VERSIONS, UNITS, all_fmus, clocked_path, fmu_path
+from packages import BEARING_UNITS, FMI_VERSIONS, SAMPLED_UNITS, UNITS, all_fmus, clocked_path, fmu_path
 
 # Same condition as in requirements.txt.
 if sys.platform != "linux" or platform.machine() != "x86_64" or sys.version_info >= (3, 15):
@@ -21,7 +21,7 @@ if sys.platform != "linux" or platform.machine() != "x86_64" or sys.version_info
 def pytest_configure() -> None:
     """Stop at once when there is nothing to test."""
     paths = [fmu_path(version, unit) for version in FMI_VERSIONS for unit in UNITS]
-    paths += [clocked_path(unit) for unit in UNITS if unit.endswith("Controller")]
+    paths += [clocked_path(unit) for unit in SAMPLED_UNITS]
     missing = [str(path) for path in paths if not path.is_file()]
     if missing:
         raise pytest.UsageError(

@@ -9,7 +9,10 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 FMI_VERSIONS = [2, 3]
 PLANT, CONTROLLER = BEARING_UNITS = ["MagneticBearingPlant", "MagneticBearingController"]
 BALL_UNITS = ["LevitatedBallPlant", "LevitatedBallController"]
-UNITS = BEARING_UNITS + BALL_UNITS
+
+DESCRIPTIONS = REPOSITORY / "modelDescription"
+UNITS = sorted(path.stem for path in DESCRIPTIONS.glob("fmi2/*.xml"))
+SAMPLED_UNITS = sorted(path.stem for path in DESCRIPTIONS.glob("fmi3-clocked/*.xml"))
 
 
 def dist() -> Path:

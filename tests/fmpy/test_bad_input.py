@@ -11,7 +11,7 @@ import pytest
 from bearing import Loop, bits
 from cosimulation import Fmu
 from fmpy.fmi1 import FMICallException
-from packages import CONTROLLER, PLANT, UNITS, fmu_path
+from packages import BEARING_UNITS, CONTROLLER, PLANT, UNITS, fmu_path
 
 ERROR = 3  # status of both FMI versions
 DONE = 50  # samples before the offence
@@ -90,7 +90,7 @@ WRONG_REFERENCE = [
 ]
 WRONG_TIME = [
     stepping(unit, *arguments)
-    for unit in UNITS
+    for unit in BEARING_UNITS
     for arguments in [
         (TIME, 0.0, ["communicationStepSize", "0 s", "greater than 0"]),
         (TIME, -1e-3, ["communicationStepSize", "-0.001 s", "greater than 0"]),

@@ -11,19 +11,12 @@ import pytest
 from bearing import bits
 from cosimulation import Fmu
 from fmpy.fmi1 import FMICallException
-from packages import CONTROLLER, FMI_VERSIONS, PLANT, REPOSITORY, fmu_path
+from packages import CONTROLLER, FMI_VERSIONS, PLANT, REPOSITORY, UNITS, fmu_path
 
 STEP_SIZE = 1e-3  # s
 STEPS = 200
-INPUTS = {
-    PLANT: "voltage",
-    CONTROLLER: "position",
-    "LevitatedBallPlant": "voltage",
-    "LevitatedBallController": "current",
-    "MaglevRigPlant": "voltage",
-    "MaglevRigController": "sensor_voltage",
-}
-# Parameters that bring as much hidden state into play as possible: noise generators, a filter with memory.
+# Parameters that bring as much hidden state into play as possible: noise generators, a filter with memory. Other units run
+# with their start values.
 PARAMETERS = {
     PLANT: {"sensor.noise": 1e-7, "process.flux_noise": 1e-6},
     CONTROLLER: {"observer.kind": "kalman"},
@@ -38,9 +31,9 @@ import sys
 from pathlib import Path
 from cosimulation import Fmu
 from test_state import continue_from, digits
-path, unit, state, first, last = sys.argv[1:]
+path, state, first, last = sys.argv[1:]
 with Fmu(Path(path)) as fmu:
-    for row in continue_from(fmu, unit, Path(state).read_bytes(), int(first), int(last)):
+    for row in continue_from(fmu, Path(state).read_bytes(), int(first), int(last)):
         print(digits(row))
 """
 
@@ -49,8 +42,12 @@ def reals(fmu: Fmu) -> list[float]:
     return fmu.get_reals([name for name, variable in fmu.variables.items() if variable.type in ("Real", "Float64")])
 
 
-def step(fmu: Fmu, unit: str, k: int) -> tuple[int, ...]:
-    fmu.set({INPUTS[unit]: 1e-4 * (k % 7)})
+def first_input(fmu: Fmu) -> str:
+    return next(name for name, variable in fmu.variables.items() if variable.causality == "input")
+
+
+def step(fmu: Fmu, k: int) -> tuple[int, ...]:
+    fmu.set({first_input(fmu): 1e-4 * (k % 7)})
     fmu.step(k * STEP_SIZE, STEP_SIZE)
     return bits(reals(fmu))
 
@@ -60,7 +57,7 @@ def digits(row: tuple[int, ...]) -> str:
 
 
 def started(fmu: Fmu, unit: str) -> Fmu:
-    fmu.initialize(PARAMETERS[unit])
+    fmu.initialize(PARAMETERS.get(unit, {}))
     return fmu
 
 
@@ -71,42 +68,42 @@ def saved_bytes(fmu: Fmu) -> bytes:
     return bytes(serialized)
 
 
-def continue_from(fmu: Fmu, unit: str, state: bytes, first: int, last: int) -> list[tuple[int, ...]]:
+def continue_from(fmu: Fmu, state: bytes, first: int, last: int) -> list[tuple[int, ...]]:
     """Restore a serialized state in an instance that was not even initialized, and go on."""
     handle = fmu.slave.deserializeFMUState(state)
     fmu.slave.setFMUState(handle)
     fmu.slave.freeFMUState(handle)
-    return [step(fmu, unit, k) for k in range(first, last)]
+    return [step(fmu, k) for k in range(first, last)]
 
 
-@pytest.mark.parametrize("unit", INPUTS)
+@pytest.mark.parametrize("unit", UNITS)
 def test_a_restored_run_repeats_itself(fmi_version: int, unit: str, open_fmu: Callable[[Path], Fmu]) -> None:
     fmu = started(open_fmu(fmu_path(fmi_version, unit)), unit)
     for k in range(STEPS):
-        step(fmu, unit, k)
+        step(fmu, k)
     state = fmu.slave.getFMUState()
     runs = []
     for _ in range(3):
-        runs.append([step(fmu, unit, k) for k in range(STEPS, 2 * STEPS)])
+        runs.append([step(fmu, k) for k in range(STEPS, 2 * STEPS)])
         fmu.slave.setFMUState(state)
     fmu.slave.freeFMUState(state)
     assert runs[0] == runs[1] == runs[2]
     assert len(set(runs[0])) == STEPS, "the run stands still"
 
 
-@pytest.mark.parametrize("unit", INPUTS)
+@pytest.mark.parametrize("unit", UNITS)
 @pytest.mark.parametrize("other_version", FMI_VERSIONS, ids=lambda version: f"to-fmi{version}")
 def test_another_process_and_version_continue(
     fmi_version: int, other_version: int, unit: str, open_fmu: Callable[[Path], Fmu], tmp_path: Path
 ) -> None:
     fmu = started(open_fmu(fmu_path(fmi_version, unit)), unit)
     for k in range(STEPS):
-        step(fmu, unit, k)
+        step(fmu, k)
     file = tmp_path / "state"
     file.write_bytes(saved_bytes(fmu))
     assert file.stat().st_size <= 4096
-    straight = [digits(step(fmu, unit, k)) for k in range(STEPS, 2 * STEPS)]
-    arguments = [fmu_path(other_version, unit), unit, file, str(STEPS), str(2 * STEPS)]
+    straight = [digits(step(fmu, k)) for k in range(STEPS, 2 * STEPS)]
+    arguments = [fmu_path(other_version, unit), file, str(STEPS), str(2 * STEPS)]
     process = subprocess.run(
         [sys.executable, "-c", CONTINUE, *arguments],
         env={"PYTHONPATH": f"{REPOSITORY / 'scripts'}:{REPOSITORY / 'tests' / 'fmpy'}"},
@@ -118,15 +115,15 @@ def test_another_process_and_version_continue(
     assert process.stdout.split("\n")[:-1] == straight
 
 
-@pytest.mark.parametrize("unit", INPUTS)
+@pytest.mark.parametrize("unit", UNITS)
 def test_what_is_no_state_is_refused(
     fmi_version: int, unit: str, open_fmu: Callable[[Path], Fmu], messages: list[str]
 ) -> None:
     fmu = started(open_fmu(fmu_path(fmi_version, unit)), unit)
-    step(fmu, unit, 0)
+    step(fmu, 0)
     state = saved_bytes(fmu)
     before = bits(reals(fmu))
-    other = next(name for name in INPUTS if name != unit)
+    other = next(name for name in UNITS if name != unit)
     foreign = saved_bytes(started(open_fmu(fmu_path(fmi_version, other)), other))
     damaged = bytearray(state)
     damaged[len(state) // 2] ^= 1

@@ -1,12 +1,16 @@
-//! What is in packages, and packages with other start values, around a file that passes for a library.
+//! What is in packages, of this build or, of units that a test adds, as they would be, without a library; and packages with
+//! other start values, around a file that passes for a library.
 
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use maglev_fmu::package::{GenerationTime, Library, SystemForm, build_with};
-use maglev_fmu::unit::system::System;
-use maglev_fmu::unit::{Description, StartValues};
+use maglev_fmu::package::{
+    Entry, FmiVersion, Form, GenerationTime, Library, SystemForm, build_with, contents, system_contents,
+};
+use maglev_fmu::unit::system::{SYSTEMS, System};
+use maglev_fmu::unit::{Description, StartValues, UNITS, UnitType};
+use maglev_fmu_test::packages;
 use object::Architecture;
 use tempfile::TempDir;
 use zip::ZipArchive;
@@ -18,9 +22,32 @@ pub fn packages_with(start_values: &[(&'static Description, StartValues)]) -> Te
     let directory = tempfile::tempdir().unwrap();
     let library = write_library(directory.path(), Architecture::X86_64);
     let libraries = [Library::read(&library).unwrap()];
-    let time = GenerationTime::from_epoch_seconds(1_234_567_890);
-    build_with(directory.path(), start_values, &libraries, time).unwrap();
+    build_with(directory.path(), start_values, &libraries, TIME).unwrap();
     directory
+}
+
+const TIME: GenerationTime = GenerationTime::from_epoch_seconds(1_234_567_890);
+
+/// A file of the package of a unit.
+pub fn unit_file(version: FmiVersion, unit: &'static UnitType, member: &str) -> String {
+    let (name, form) = (unit.description.name, Form::from(version));
+    if UNITS.iter().any(|own| std::ptr::eq(*own, unit)) {
+        return text(&packages::directory().join(form.directory()).join(name).with_extension("fmu"), member);
+    }
+    let entries = contents(unit.description, StartValues::TABLE, form, TIME, &[]).unwrap();
+    String::from_utf8(find(entries, member)).unwrap()
+}
+
+/// A file of the package of a system.
+pub fn system_file(form: SystemForm, system: &'static System, member: &str) -> Vec<u8> {
+    if SYSTEMS.iter().any(|own| std::ptr::eq(*own, system)) {
+        return bytes(&path(packages::directory(), form, system), member);
+    }
+    find(system_contents(system, form, &[], TIME, &[]).unwrap(), member)
+}
+
+fn find(entries: Vec<Entry>, member: &str) -> Vec<u8> {
+    entries.into_iter().find(|entry| entry.path == member).unwrap().bytes.into_owned()
 }
 
 /// Path of a system's package.

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use maglev_fmu::fmi::{FmiVersion, function_names};
-use maglev_fmu::unit::{UNITS, editions};
+use maglev_fmu::unit::{UNITS, editions_of};
 use object::pe;
 use object::write::elf::{FileHeader, Sym, Writer as ElfWriter};
 use object::write::pe::{NtHeaders, Writer as PeWriter};
@@ -25,7 +25,8 @@ pub fn library(format: BinaryFormat, architecture: Architecture, functions: &[&s
         other => panic!("no library in the format {other:?}"),
     };
     UNITS.iter().for_each(|unit| bytes.extend(unit.description.name.bytes()));
-    editions().for_each(|(unit, edition)| bytes.extend(edition.token(unit.description).as_str().bytes()));
+    editions_of(UNITS.iter().copied())
+        .for_each(|(unit, edition)| bytes.extend(edition.token(unit.description).as_str().bytes()));
     bytes.extend((0..25_000u32).flat_map(|number| number.wrapping_mul(number).to_le_bytes()));
     bytes
 }

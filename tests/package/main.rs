@@ -8,6 +8,7 @@ mod documents;
 mod library;
 mod library_file;
 mod model_description;
+mod reference_runs;
 mod related_files;
 mod start_values;
 mod system_units;

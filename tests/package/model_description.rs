@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use maglev_fmu::package::{Capabilities, FmiVersion, Form, GenerationTime, model_description};
 use maglev_fmu::unit::structure::DependencyKind;
 use maglev_fmu::unit::variable::{Causality, Kind};
-use maglev_fmu::unit::{Description, Edition, StartValues, UNITS};
+use maglev_fmu::unit::{Description, Edition, StartValues, UNITS, units};
 
 use super::xml::Element;
 
@@ -50,7 +50,7 @@ fn types(root: &Element) -> BTreeMap<&str, &Element> {
 }
 
 /// Unit name to display unit names.
-fn units(root: &Element) -> BTreeMap<&str, Vec<&str>> {
+fn units_of_measure(root: &Element) -> BTreeMap<&str, Vec<&str>> {
     let definitions = &root.child("UnitDefinitions").children;
     assert!(definitions.iter().all(|element| element.children_named("BaseUnit").count() == 1));
     let units: BTreeMap<&str, Vec<&str>> = definitions
@@ -65,7 +65,7 @@ fn units(root: &Element) -> BTreeMap<&str, Vec<&str>> {
 }
 
 fn check_all(check: impl Fn(&'static Description, Form, &Element)) {
-    for unit in UNITS {
+    for unit in units() {
         for form in Form::all_of(unit.description) {
             let text = model_description(unit.description, StartValues::TABLE, form, None);
             check(unit.description, form, &Element::parse(&text));
@@ -359,7 +359,7 @@ fn numbers_keep_all_their_digits() {
 #[test]
 fn types_and_units_are_defined_and_used() {
     check_all(|_, form, root| {
-        let (types, units) = (types(root), units(root));
+        let (types, units) = (types(root), units_of_measure(root));
         let mut used = BTreeSet::new();
         for variable in variables(root) {
             assert!(!types.contains_key(variable.name), "{} is also a type", variable.name);

@@ -2,25 +2,27 @@
 
 use std::collections::BTreeSet;
 use std::io::{Cursor, Read};
-use std::path::Path;
 
 use maglev_fmu::package::SystemForm;
-use maglev_fmu::unit::system::{BEARING, SYSTEMS};
+use maglev_fmu::unit::system::{BEARING, systems};
 use maglev_fmu::unit::variable::{Causality, Kind};
 use maglev_fmu::unit::{Description, Edition, StartValues};
-use maglev_fmu_test::packages;
 use zip::ZipArchive;
 
-use super::built_packages::{bytes, packages_with, path, ssp_version, text};
+use super::built_packages::{bytes, packages_with, path, ssp_version, system_file};
 use super::xml::Element;
 
-/// A unit in a package of a system, by its model description.
-fn description_inside(package: &Path, unit: &Description) -> Element {
-    let fmu = bytes(package, &format!("resources/{}.fmu", unit.name));
+/// The model description of a unit in a package of a system.
+fn description_inside(fmu: Vec<u8>) -> Element {
     let mut archive = ZipArchive::new(Cursor::new(fmu)).unwrap();
     let mut description = String::new();
     archive.by_name("modelDescription.xml").unwrap().read_to_string(&mut description).unwrap();
     Element::parse(&description)
+}
+
+/// Where a unit is in a package of a system.
+fn inside(unit: &Description) -> String {
+    format!("resources/{}.fmu", unit.name)
 }
 
 fn token(description: &Element) -> &str {
@@ -30,14 +32,14 @@ fn token(description: &Element) -> &str {
 /// Importers ignore parameter sets or take no enumerations, so the units have to start by themselves as they should.
 #[test]
 fn systems_hold_units_that_start_as_the_loop_needs() {
-    let directory = packages::directory();
     for form in SystemForm::ALL {
-        for system in SYSTEMS {
-            let package = path(directory, form, system);
-            let structure = Element::parse(&text(&package, "SystemStructure.ssd"));
+        for system in systems() {
+            let document =
+                |member: &str| Element::parse(&String::from_utf8(system_file(form, system, member)).unwrap());
+            let structure = document("SystemStructure.ssd");
             for unit in [system.plant, system.controller] {
                 let starts = system.start_values(unit.description).unwrap();
-                let inside = description_inside(&package, unit.description);
+                let inside = description_inside(system_file(form, system, &inside(unit.description)));
                 let version = if form == SystemForm::Two { "3.0" } else { "2.0" };
                 assert_eq!(inside.attribute("fmiVersion"), Some(version));
                 assert_eq!(token(&inside), starts.token(unit.description, Edition::Plain));
@@ -46,7 +48,7 @@ fn systems_hold_units_that_start_as_the_loop_needs() {
                 let component = components.find(|element| element.attribute("name") == name).unwrap();
                 let bindings = &component.child("ssd:ParameterBindings").children;
                 assert_eq!(bindings.len(), 1);
-                let parameters = Element::parse(&text(&package, bindings[0].attribute("source").unwrap()));
+                let parameters = document(bindings[0].attribute("source").unwrap());
                 assert_eq!(parameters.attribute("version"), Some(ssp_version(form)));
                 check_parameters(&parameters, unit.description, &starts, form);
             }
@@ -64,10 +66,8 @@ fn start_values_of_the_user_go_before_those_of_the_system() {
     let expected = BEARING.start_values(unit).unwrap().overridden_by(&wanted).unwrap();
     assert!(expected.token(unit, Edition::Plain).contains("=2.0"));
     for form in SystemForm::ALL {
-        assert_eq!(
-            token(&description_inside(&path(directory.path(), form, &BEARING), unit)),
-            expected.token(unit, Edition::Plain)
-        );
+        let fmu = bytes(&path(directory.path(), form, &BEARING), &inside(unit));
+        assert_eq!(token(&description_inside(fmu)), expected.token(unit, Edition::Plain));
     }
 }
 

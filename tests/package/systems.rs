@@ -3,12 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use maglev_fmu::package::{FmiVersion, SystemForm};
-use maglev_fmu::unit::UNITS;
-use maglev_fmu::unit::system::{SYSTEMS, System};
+use maglev_fmu::unit::system::{System, systems};
+use maglev_fmu::unit::units;
 use maglev_fmu::unit::variable::{Causality, Kind};
-use maglev_fmu_test::packages;
 
-use super::built_packages::{path, ssp_version, text};
+use super::built_packages::{ssp_version, system_file, unit_file};
 use super::xml::Element;
 
 /// Variable to member of a terminal.
@@ -23,17 +22,14 @@ fn members(terminal: &Element) -> BTreeMap<&str, &str> {
 
 #[test]
 fn terminals_of_a_loop_fit_each_other() {
-    let directory = packages::directory();
     for version in FmiVersion::ALL {
-        let terminals: BTreeMap<&str, Element> = UNITS
-            .iter()
+        let terminals: BTreeMap<&str, Element> = units()
             .map(|unit| {
-                let name = unit.description.name;
-                let package = directory.join(version.directory()).join(name).with_extension("fmu");
-                (name, Element::parse(&text(&package, "terminalsAndIcons/terminalsAndIcons.xml")))
+                let file = unit_file(version, unit, "terminalsAndIcons/terminalsAndIcons.xml");
+                (unit.description.name, Element::parse(&file))
             })
             .collect();
-        for System { name, plant, controller, sensing, actuation, .. } in SYSTEMS {
+        for System { name, plant, controller, sensing, actuation, .. } in systems() {
             let [plant, controller] = [plant, controller].map(|unit| {
                 let all = terminals[unit.description.name].child("Terminals");
                 let mut found = all.children_named("Terminal");
@@ -58,6 +54,10 @@ fn terminals_of_a_loop_fit_each_other() {
 /// Whether packages of a form have connectors of the system itself.
 fn is_driven(form: SystemForm) -> bool {
     form != SystemForm::Closed
+}
+
+fn structure(form: SystemForm, system: &'static System) -> Element {
+    Element::parse(&String::from_utf8(system_file(form, system, "SystemStructure.ssd")).unwrap())
 }
 
 /// Component called `name` of a system structure.
@@ -85,10 +85,9 @@ fn wires(structure: &Element) -> Vec<Wire> {
 
 #[test]
 fn systems_are_wired_as_the_table_says() {
-    let directory = packages::directory();
     for form in SystemForm::ALL {
-        for system in SYSTEMS {
-            let structure = Element::parse(&text(&path(directory, form, system), "SystemStructure.ssd"));
+        for system in systems() {
+            let structure = structure(form, system);
             assert_eq!(structure.attribute("version"), Some(ssp_version(form)));
             let [plant, controller] = [system.plant, system.controller].map(|unit| unit.description.name);
             let inner: BTreeSet<Wire> = wires(&structure)
@@ -139,10 +138,9 @@ fn check_ends(structure: &Element) {
 
 #[test]
 fn what_the_loop_leaves_open_is_a_connector_of_the_system() {
-    let directory = packages::directory();
     for form in SystemForm::ALL.into_iter().filter(|form| is_driven(*form)) {
-        for system in SYSTEMS {
-            let structure = Element::parse(&text(&path(directory, form, system), "SystemStructure.ssd"));
+        for system in systems() {
+            let structure = structure(form, system);
             let all = wires(&structure);
             let inputs: BTreeSet<_> =
                 all.iter().filter(|wire| wire[0].is_none()).map(|wire| (&wire[2], &wire[3])).collect();
@@ -174,10 +172,8 @@ fn what_the_loop_leaves_open_is_a_connector_of_the_system() {
 /// Some importers refuse wires from and to the system itself.
 #[test]
 fn closed_packages_have_no_connectors_of_the_system() {
-    let directory = packages::directory();
-    for system in SYSTEMS {
-        let structure =
-            Element::parse(&text(&path(directory, SystemForm::Closed, system), "SystemStructure.ssd"));
+    for system in systems() {
+        let structure = structure(SystemForm::Closed, system);
         assert!(wires(&structure).iter().all(|wire| wire.iter().all(Option::is_some)));
         assert_eq!(structure.child("ssd:System").children_named("ssd:Connectors").count(), 0);
     }
@@ -186,10 +182,8 @@ fn closed_packages_have_no_connectors_of_the_system() {
 /// Importers that cut names at dots take a variable `controller.kp` for one of an element `controller`.
 #[test]
 fn no_variable_begins_with_the_name_of_an_element() {
-    let directory = packages::directory();
-    for system in SYSTEMS {
-        let structure =
-            Element::parse(&text(&path(directory, SystemForm::Closed, system), "SystemStructure.ssd"));
+    for system in systems() {
+        let structure = structure(SystemForm::Closed, system);
         for element in &structure.child("ssd:System").child("ssd:Elements").children {
             let name = element.attribute("name").unwrap();
             for unit in [system.plant, system.controller] {
@@ -202,10 +196,9 @@ fn no_variable_begins_with_the_name_of_an_element() {
 
 #[test]
 fn the_step_is_where_importers_look_for_it() {
-    let directory = packages::directory();
     for form in SystemForm::ALL {
-        for system in SYSTEMS {
-            let structure = Element::parse(&text(&path(directory, form, system), "SystemStructure.ssd"));
+        for system in systems() {
+            let structure = structure(form, system);
             let experiment = structure.child("ssd:DefaultExperiment");
             let number =
                 |element: &Element, name: &str| element.attribute(name).unwrap().parse::<f64>().unwrap();

@@ -5,7 +5,8 @@ use std::{io, ptr};
 use super::roles::{self, Dependencies};
 use crate::fmi::LOG_CATEGORIES;
 use crate::package::xml::{Attribute, Writer, attribute, element, empty_element, optional, real};
-use crate::unit::quantity::{Enumeration, Quantity, UnitOfMeasure};
+use crate::unit::quantity::{Enumeration, Quantity};
+use crate::unit::unit_of_measure::UnitOfMeasure;
 use crate::unit::variable::{Kind, Variable};
 use crate::unit::{Description, StartValues};
 
@@ -43,9 +44,17 @@ fn distinct<T>(items: impl Iterator<Item = &'static T>) -> Vec<&'static T> {
     found
 }
 
-/// The attributes of `BaseUnit`: exponents of the SI base units.
-pub fn base_unit(unit: &UnitOfMeasure) -> impl Iterator<Item = (&'static str, i8)> {
-    ["kg", "m", "s", "A"].into_iter().zip(unit.exponents)
+/// `BaseUnit` of FMI and SSP: what is not as the schemas have it by default.
+pub fn base_unit(writer: &mut Writer, name: &str, unit: &UnitOfMeasure) -> io::Result<()> {
+    let exponents = unit.dimension.exponents().into_iter().filter(|(_, exponent)| *exponent != 0);
+    let exponents = exponents.map(|(name, exponent)| attribute(name, exponent));
+    let factor = (unit.factor != 1.0).then(|| real(unit.factor));
+    let scale = optional("factor", factor).into_iter().chain(offset(unit.offset));
+    empty_element(writer, name, exponents.chain(scale))
+}
+
+fn offset(offset: f64) -> Option<Attribute> {
+    optional("offset", (offset != 0.0).then(|| real(offset)))
 }
 
 /// `UnitDefinitions` (FMI 2.0, section 2.2.2; FMI 3.0, section 2.4.3).
@@ -58,19 +67,17 @@ pub fn unit_definitions(writer: &mut Writer, description: &Description) -> io::R
 /// `Unit` with its exponents and its display unit.
 fn unit_definition(writer: &mut Writer, unit: &UnitOfMeasure) -> io::Result<()> {
     element(writer, "Unit", [attribute("name", unit.name)], |writer| {
-        let exponents = base_unit(unit).filter(|(_, exponent)| *exponent != 0);
-        let exponents = exponents.map(|(name, exponent)| attribute(name, exponent));
-        empty_element(writer, "BaseUnit", exponents)?;
-        unit.display.into_iter().try_for_each(|(name, factor)| {
-            let attributes = [attribute("name", name), attribute("factor", real(factor))];
-            empty_element(writer, "DisplayUnit", attributes)
+        base_unit(writer, "BaseUnit", unit)?;
+        unit.display.iter().try_for_each(|display| {
+            let attributes = [attribute("name", display.name), attribute("factor", real(display.factor))];
+            empty_element(writer, "DisplayUnit", attributes.into_iter().chain(offset(display.offset)))
         })
     })
 }
 
 /// Attributes of the type that stands for a quantity (FMI 2.0, section 2.2.3; FMI 3.0, section 2.4.4).
 pub fn quantity_attributes(quantity: &Quantity) -> impl Iterator<Item = Attribute> {
-    let display_unit = quantity.unit.display.map(|(name, _)| name);
+    let display_unit = quantity.unit.display.as_ref().map(|display| display.name);
     [attribute("quantity", quantity.name), attribute("unit", quantity.unit.name)]
         .into_iter()
         .chain(optional("displayUnit", display_unit))

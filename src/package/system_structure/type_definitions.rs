@@ -38,8 +38,7 @@ pub fn units<'a>(
     element(writer, name, [], |writer| {
         units_of_measure(variables).into_iter().try_for_each(|unit| {
             element(writer, "ssc:Unit", [attribute("name", unit.name)], |writer| {
-                let exponents = base_unit(unit).map(|(name, exponent)| attribute(name, exponent));
-                empty_element(writer, "ssc:BaseUnit", exponents)
+                base_unit(writer, "ssc:BaseUnit", unit)
             })
         })
     })

@@ -93,6 +93,6 @@ pub(super) fn initialise<E, S: Scalar, const N: usize, const X: usize, const U: 
     if is_read {
         let rows = E::SENSOR;
         let reading = noisy(E::measured(values, &state), values[rows.noise], sample);
-        values[rows.reading] = E::within_range(values, quantise(reading, values[rows.resolution]));
+        values[E::READING] = E::within_range(values, quantise(reading, values[rows.resolution]));
     }
 }

@@ -4,6 +4,7 @@ use core::fmt::Debug;
 
 use crate::scalar::Scalar;
 use crate::unit::Description;
+use crate::unit::variable::{Variable, required_row};
 use crate::unit::work::Load;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -15,15 +16,26 @@ pub struct Motion<M, const X: usize> {
     pub mode: M,
 }
 
-/// Rows of a plant's sensor.
+/// Rows of what a plant's sensor is like, by their names in the plant's table.
 #[derive(Clone, Copy, Debug)]
 pub struct SensorRows {
-    pub reading: usize,
     /// Standard deviation of its white noise.
     pub noise: usize,
     pub resolution: usize,
     pub sample_time: usize,
     pub seed: usize,
+}
+
+impl SensorRows {
+    /// Found by the compiler.
+    pub const fn of(variables: &[Variable]) -> Self {
+        Self {
+            noise: required_row(variables, "sensor.noise"),
+            resolution: required_row(variables, "sensor.resolution"),
+            sample_time: required_row(variables, "sensor.sample_time"),
+            seed: required_row(variables, "sensor.seed"),
+        }
+    }
 }
 
 /// White noise that is added to a state at each communication point.
@@ -58,7 +70,11 @@ pub trait PlantEquations<const N: usize, const X: usize, const U: usize>:
     /// Rows of the inputs, the voltage first.
     const INPUTS: [usize; U];
 
-    const SENSOR: SensorRows;
+    /// Row of the sensor's reading.
+    const READING: usize;
+
+    /// Not to be chosen.
+    const SENSOR: SensorRows = SensorRows::of(Self::DESCRIPTION.variables);
 
     const PROCESS_NOISE: Option<ProcessNoise> = None;
 
@@ -74,11 +90,17 @@ pub trait PlantEquations<const N: usize, const X: usize, const U: usize>:
     fn initial_state<S: Scalar>(values: &[S; N]) -> [S; X];
 
     /// The mode of the initial state.
-    fn initial_mode(values: &[f64; N], state: &[f64; X]) -> Self::Mode;
+    fn initial_mode(values: &[f64; N], state: &[f64; X]) -> Self::Mode {
+        let _ = (values, state);
+        Self::Mode::default()
+    }
 
     /// A number that depends on whatever [`Self::initial_mode`] follows from.
     #[cfg(feature = "tools")]
-    fn cause_of_initial_mode<S: Scalar>(values: &[S; N], state: &[S; X]) -> S;
+    fn cause_of_initial_mode<S: Scalar>(values: &[S; N], state: &[S; X]) -> S {
+        let _ = (values, state);
+        S::from(0.0)
+    }
 
     /// `state` with what a mode forces it to be.
     #[cfg(feature = "tools")]
@@ -144,7 +166,10 @@ pub trait PlantEquations<const N: usize, const X: usize, const U: usize>:
         values: &[f64; N],
         motion: Motion<Self::Mode, X>,
         inputs: [f64; U],
-    ) -> Motion<Self::Mode, X>;
+    ) -> Motion<Self::Mode, X> {
+        let _ = (values, inputs);
+        motion
+    }
 
     /// The motion at the end of a step, where something beside [`Self::advance`] may have moved it.
     fn at_communication_point(values: &[f64; N], motion: Motion<Self::Mode, X>) -> Motion<Self::Mode, X> {

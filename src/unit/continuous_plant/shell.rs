@@ -67,7 +67,7 @@ impl<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U: usize>
     pub(super) fn read_sensor(&mut self, measured: f64) {
         let rows = E::SENSOR;
         let noisy = self.sensor.read(measured, self.values[rows.noise]);
-        self.values[rows.reading] =
+        self.values[E::READING] =
             E::within_range(&self.values, quantise(noisy, self.values[rows.resolution]));
     }
 
@@ -139,7 +139,7 @@ pub(super) fn follow<E, S: Scalar, const N: usize, const X: usize, const U: usiz
         E::report_acting_voltage(values, voltage);
         if !is_read {
             let measured = E::measured(values, &E::STATES.map(|row| values[row]));
-            values[E::SENSOR.reading] = E::within_range(values, measured);
+            values[E::READING] = E::within_range(values, measured);
         }
     }
 }

@@ -58,7 +58,7 @@ impl<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U: usize>
                 initialise::<E, Traced, N, X, U>(&mut run, *mode, solver, is_read, sample);
                 if solver == Solver::Importer {
                     // Whether there are readings at all.
-                    run[rows.reading] = run[rows.reading].caused_by(values[rows.sample_time]);
+                    run[E::READING] = run[E::READING].caused_by(values[rows.sample_time]);
                 }
                 for (row, value) in run.iter_mut().enumerate() {
                     if Self::differs_by_mode(&values, row, *mode, solver) {

@@ -8,7 +8,7 @@ use crate::observer::ball_observer::{BallEstimate, BallObserver};
 use crate::plant::levitated_ball::State;
 use crate::signal::{BallReferenceFilter, SmoothReference};
 use crate::unit::controller_choices::Feedback;
-use crate::unit::sampled_controller::{ControllerRows, ObserverAndLaw, Sample};
+use crate::unit::sampled_controller::{ObserverAndLaw, Sample};
 use crate::unit::{Description, Journal, Topic, UnitError};
 use serde::{Deserialize, Serialize};
 
@@ -41,15 +41,6 @@ fn publish(estimate: &BallEstimate, reference: SmoothReference, values: &mut [f6
 
 impl ObserverAndLaw<COUNT> for BallObserverAndLaw {
     const DESCRIPTION: &'static Description = &DESCRIPTION;
-    const ROWS: ControllerRows = ControllerRows {
-        sample_time: SAMPLE_TIME,
-        start_delay: START_DELAY,
-        longest_step: LONGEST_STEP,
-        tick_time: TICK_TIME,
-        voltage: VOLTAGE_OUTPUT,
-        voltage_applied: VOLTAGE_APPLIED,
-        voltage_source: OBSERVER_VOLTAGE_SOURCE,
-    };
 
     fn new(values: &[f64; COUNT]) -> Self {
         Self {

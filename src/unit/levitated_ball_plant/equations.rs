@@ -5,7 +5,7 @@ use crate::plant::end_stops::{Contact, rate_in_contact, settled, transition};
 use crate::plant::levitated_ball::{BallConstants, Drive, DrivenBall, LevitatedBall, State};
 use crate::scalar::Scalar;
 use crate::unit::Description;
-use crate::unit::continuous_plant::{Motion, PlantEquations, SensorRows};
+use crate::unit::continuous_plant::{Motion, PlantEquations};
 use crate::unit::end_stop_events::indicators;
 #[cfg(feature = "tools")]
 use crate::unit::end_stop_events::{cause_of_contact, imposed};
@@ -74,13 +74,7 @@ impl PlantEquations<COUNT, 3, 2> for LevitatedBallEquations {
     const MODES: &'static [Contact] = &Contact::ALL;
     const STATES: [usize; 3] = [POSITION_OUTPUT, VELOCITY_OUTPUT, FLUX_OUTPUT];
     const INPUTS: [usize; 2] = [VOLTAGE_INPUT, FORCE_INPUT];
-    const SENSOR: SensorRows = SensorRows {
-        reading: CURRENT_MEASURED,
-        noise: SENSOR_NOISE,
-        resolution: SENSOR_RESOLUTION,
-        sample_time: SENSOR_SAMPLE_TIME,
-        seed: SENSOR_SEED,
-    };
+    const READING: usize = CURRENT_MEASURED;
 
     fn new(values: &[f64; COUNT]) -> Self {
         let ball = ball(values);

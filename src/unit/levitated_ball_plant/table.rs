@@ -5,8 +5,14 @@ use crate::unit::levitated_ball::{
     ACCELERATION, CURRENT, FLUX, FORCE, LABORATORY_FLUX, POSITION, VELOCITY, VOLTAGE, gap, gravity,
     inductance_constant, mass, resistance,
 };
-use crate::unit::sensor::sample_time;
+use crate::unit::sensor::{SensorVariables, sensor_variables};
 use crate::unit::variable::{Kind, Variability, Variable, variable_table};
+
+const SENSOR: SensorVariables = sensor_variables! {
+    reads "current_measured", &CURRENT, "Current with sensor noise and resolution", ideally "current itself";
+    with errors &CURRENT, up to 1e3, of "the current sensor";
+    seeds "the sensor's";
+};
 
 variable_table! {
     TIME = Variable::time();
@@ -28,9 +34,7 @@ variable_table! {
     VOLTAGE_MEASURED = Variable::output("voltage_measured", &VOLTAGE)
         .describe("Mean voltage that acted over the last step, in model exchange the one that acts; wire it to the \
             controller's voltage_applied");
-    CURRENT_MEASURED = Variable::output("current_measured", &CURRENT)
-        .describe("Current with sensor noise and resolution, one reading per step or per sensor.sample_time; without the \
-            latter in model exchange the current itself");
+    CURRENT_MEASURED = SENSOR.reading;
     CONTACT = Variable::held_output("contact", Kind::Boolean)
         .describe("Whether the ball rests on the magnet or on the lower stop");
     POSITION_DERIVATIVE = Variable::local("der(position)", Kind::Real(&VELOCITY), Variability::Continuous)
@@ -65,16 +69,10 @@ variable_table! {
     INITIAL_FLUX = Variable::parameter("initial.flux", Kind::Real(&FLUX), LABORATORY_FLUX)
         .range(-10.0, 10.0)
         .describe("lam at the start; the start value sqrt(2 k m g) carries the ball of the other start values");
-    SENSOR_NOISE = Variable::tunable("sensor.noise", Kind::Real(&CURRENT), 0.0)
-        .range(0.0, 1e3)
-        .describe("Standard deviation of the current sensor's white noise, per reading");
-    SENSOR_RESOLUTION = Variable::tunable("sensor.resolution", Kind::Real(&CURRENT), 0.0)
-        .range(0.0, 1e3)
-        .describe("Step of the current sensor's output, 0 for none");
-    SENSOR_SAMPLE_TIME = sample_time();
-    SENSOR_SEED = Variable::parameter("sensor.seed", Kind::Integer, 1.0)
-        .range(0.0, i32::MAX as f64)
-        .describe("Seed of the sensor's noise; the same seed gives the same run on every platform");
+    SENSOR_NOISE = SENSOR.noise;
+    SENSOR_RESOLUTION = SENSOR.resolution;
+    SENSOR_SAMPLE_TIME = SENSOR.sample_time;
+    SENSOR_SEED = SENSOR.seed;
 }
 
 pub static DESCRIPTION: Description = Description::new("LevitatedBallPlant", &VARIABLES)

@@ -9,7 +9,7 @@ use crate::controller::saturate_between;
 use crate::observer::extended_state::ExtendedState;
 use crate::observer::sampled_extended_state::ExtendedStateObserver;
 use crate::signal::reference_filter::{Reference, ReferenceFilter};
-use crate::unit::sampled_controller::{ControllerRows, ObserverAndLaw, Sample};
+use crate::unit::sampled_controller::{ObserverAndLaw, Sample};
 use crate::unit::{Description, Journal, Topic, UnitError};
 use serde::{Deserialize, Serialize};
 
@@ -62,15 +62,6 @@ impl RigObserverAndLaw {
 
 impl ObserverAndLaw<COUNT> for RigObserverAndLaw {
     const DESCRIPTION: &'static Description = &DESCRIPTION;
-    const ROWS: ControllerRows = ControllerRows {
-        sample_time: SAMPLE_TIME,
-        start_delay: START_DELAY,
-        longest_step: LONGEST_STEP,
-        tick_time: TICK_TIME,
-        voltage: VOLTAGE_OUTPUT,
-        voltage_applied: VOLTAGE_APPLIED,
-        voltage_source: OBSERVER_VOLTAGE_SOURCE,
-    };
 
     fn new(values: &[f64; COUNT]) -> Self {
         Self {

@@ -6,7 +6,7 @@ use crate::plant::maglev_rig::{HeldBall, LONGEST_SUBSTEP, MaglevRig, PositionSen
 use crate::plant::maglev_rig_ramp::RampedBall;
 use crate::scalar::Scalar;
 use crate::unit::Description;
-use crate::unit::continuous_plant::{Motion, PlantEquations, SensorRows};
+use crate::unit::continuous_plant::{Motion, PlantEquations};
 use crate::unit::end_stop_events::indicators;
 #[cfg(feature = "tools")]
 use crate::unit::end_stop_events::{cause_of_contact, imposed};
@@ -62,13 +62,7 @@ impl PlantEquations<COUNT, 2, 2> for MaglevRigEquations {
     const MODES: &'static [Contact] = &Contact::ALL;
     const STATES: [usize; 2] = [POSITION, VELOCITY];
     const INPUTS: [usize; 2] = [VOLTAGE_INPUT, FORCE];
-    const SENSOR: SensorRows = SensorRows {
-        reading: SENSOR_VOLTAGE_MEASURED,
-        noise: SENSOR_NOISE,
-        resolution: SENSOR_RESOLUTION,
-        sample_time: SENSOR_SAMPLE_TIME,
-        seed: SENSOR_SEED,
-    };
+    const READING: usize = SENSOR_VOLTAGE_MEASURED;
 
     fn new(_: &[f64; COUNT]) -> Self {
         Self

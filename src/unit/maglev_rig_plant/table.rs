@@ -7,8 +7,15 @@ use crate::unit::maglev_rig::{
     OPERATING_VOLTAGE, RIG_CURRENT, RIG_FORCE, RIG_GRAVITY, RIG_MASS, SENSOR_NOISE as SENSOR_NOISE_QUANTITY,
     SENSOR_VOLTAGE as SENSOR_VOLTAGE_QUANTITY, sensor_gain, sensor_offset, voltage_max, voltage_min,
 };
-use crate::unit::sensor::sample_time;
+use crate::unit::sensor::{SensorVariables, sensor_variables};
 use crate::unit::variable::{Kind, Variability, Variable, variable_table};
+
+const SENSOR: SensorVariables = sensor_variables! {
+    reads "sensor_voltage_measured", &SENSOR_VOLTAGE_QUANTITY, "Sensor voltage with noise, resolution and range",
+        ideally "sensor voltage within the range";
+    with errors &SENSOR_NOISE_QUANTITY, up to 1e3, of "the sensor";
+    seeds "the sensor's";
+};
 
 variable_table! {
     TIME = Variable::time();
@@ -29,9 +36,7 @@ variable_table! {
             one that flows; 0 before the first step, when no voltage has acted");
     SENSOR_VOLTAGE = Variable::output("sensor_voltage", &SENSOR_VOLTAGE_QUANTITY)
         .describe("k2 x + eta, true sensor voltage");
-    SENSOR_VOLTAGE_MEASURED = Variable::output("sensor_voltage_measured", &SENSOR_VOLTAGE_QUANTITY)
-        .describe("Sensor voltage with noise, resolution and range, one reading per step or per sensor.sample_time; without \
-            the latter in model exchange the sensor voltage within the range");
+    SENSOR_VOLTAGE_MEASURED = SENSOR.reading;
     VOLTAGE_MEASURED = Variable::output("voltage_measured", &DRIVER_VOLTAGE)
         .describe("Mean voltage that acted over the last step, within the driver's limits, in model exchange the one \
             that acts; wire it to the controller's voltage_applied");
@@ -85,22 +90,16 @@ variable_table! {
     INITIAL_VELOCITY = Variable::parameter("initial.velocity", Kind::Real(&BALL_VELOCITY), 0.0)
         .range(-1e3, 1e3)
         .describe("x' at the start");
-    SENSOR_NOISE = Variable::tunable("sensor.noise", Kind::Real(&SENSOR_NOISE_QUANTITY), 0.0)
-        .range(0.0, 1e3)
-        .describe("Standard deviation of the sensor's white noise, per reading");
-    SENSOR_RESOLUTION = Variable::tunable("sensor.resolution", Kind::Real(&SENSOR_NOISE_QUANTITY), 0.0)
-        .range(0.0, 1e3)
-        .describe("Step of the sensor's output, 0 for none");
+    SENSOR_NOISE = SENSOR.noise;
+    SENSOR_RESOLUTION = SENSOR.resolution;
     SENSOR_MINIMUM = Variable::tunable("sensor.minimum", Kind::Real(&SENSOR_VOLTAGE_QUANTITY), -3.75)
         .range(-1e3, 0.0)
         .describe("Smallest sensor voltage, which no ball can reach; -3.75 V with the offset of the rig's manual");
     SENSOR_MAXIMUM = Variable::tunable("sensor.maximum", Kind::Real(&SENSOR_VOLTAGE_QUANTITY), 1.25)
         .range(0.0, 1e3)
         .describe("Largest sensor voltage, 28 mm; 1.25 V with the offset of the rig's manual");
-    SENSOR_SAMPLE_TIME = sample_time();
-    SENSOR_SEED = Variable::parameter("sensor.seed", Kind::Integer, 1.0)
-        .range(0.0, i32::MAX as f64)
-        .describe("Seed of the sensor's noise; the same seed gives the same run on every platform");
+    SENSOR_SAMPLE_TIME = SENSOR.sample_time;
+    SENSOR_SEED = SENSOR.seed;
 }
 
 pub static DESCRIPTION: Description = Description::new("MaglevRigPlant", &VARIABLES)

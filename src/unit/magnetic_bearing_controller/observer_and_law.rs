@@ -6,7 +6,7 @@ use crate::controller::{BearingLaw, saturate};
 use crate::observer::{BearingObserver, Estimate};
 use crate::plant::magnetic_bearing::State;
 use crate::unit::controller_choices::Feedback;
-use crate::unit::sampled_controller::{ControllerRows, ObserverAndLaw, Sample};
+use crate::unit::sampled_controller::{ObserverAndLaw, Sample};
 use crate::unit::{Description, Journal, Topic};
 use serde::{Deserialize, Serialize};
 
@@ -34,15 +34,6 @@ impl BearingObserverAndLaw {
 
 impl ObserverAndLaw<COUNT> for BearingObserverAndLaw {
     const DESCRIPTION: &'static Description = &DESCRIPTION;
-    const ROWS: ControllerRows = ControllerRows {
-        sample_time: SAMPLE_TIME,
-        start_delay: START_DELAY,
-        longest_step: LONGEST_STEP,
-        tick_time: TICK_TIME,
-        voltage: VOLTAGE_OUTPUT,
-        voltage_applied: VOLTAGE_APPLIED,
-        voltage_source: OBSERVER_VOLTAGE_SOURCE,
-    };
 
     fn new(values: &[f64; COUNT]) -> Self {
         let observer = BearingObserver::new(observer_settings(values), initial_estimate(values));

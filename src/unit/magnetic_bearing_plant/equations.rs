@@ -4,7 +4,7 @@ use super::table::*;
 use crate::plant::magnetic_bearing::{MagneticBearing, State};
 use crate::scalar::Scalar;
 use crate::unit::Description;
-use crate::unit::continuous_plant::{Motion, PlantEquations, ProcessNoise, SensorRows};
+use crate::unit::continuous_plant::{Motion, PlantEquations, ProcessNoise};
 use crate::unit::magnetic_bearing::map;
 use crate::unit::quantity::MAGNETIC_FLUX;
 use serde::{Deserialize, Serialize};
@@ -45,13 +45,7 @@ impl PlantEquations<COUNT, 3, 1> for MagneticBearingEquations {
     const MODES: &'static [FluxSign] = &[FluxSign::Positive, FluxSign::Negative];
     const STATES: [usize; 3] = [POSITION, VELOCITY_OUTPUT, FLUX];
     const INPUTS: [usize; 1] = [VOLTAGE_INPUT];
-    const SENSOR: SensorRows = SensorRows {
-        reading: POSITION_MEASURED,
-        noise: SENSOR_NOISE,
-        resolution: SENSOR_RESOLUTION,
-        sample_time: SENSOR_SAMPLE_TIME,
-        seed: SENSOR_SEED,
-    };
+    const READING: usize = POSITION_MEASURED;
     const PROCESS_NOISE: Option<ProcessNoise> =
         Some(ProcessNoise { state: 2, deviation: PROCESS_FLUX_NOISE });
 

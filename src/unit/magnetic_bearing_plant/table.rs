@@ -3,8 +3,14 @@
 use crate::unit::Description;
 use crate::unit::magnetic_bearing::{MAP, MapChoice, bias_flux, saturation_flux};
 use crate::unit::quantity::{ACCELERATION, LENGTH, MAGNETIC_FLUX, RATIO, VELOCITY, VOLTAGE};
-use crate::unit::sensor::sample_time;
+use crate::unit::sensor::{SensorVariables, sensor_variables};
 use crate::unit::variable::{Kind, Variability, Variable, variable_table};
+
+const SENSOR: SensorVariables = sensor_variables! {
+    reads "position_measured", &LENGTH, "Displacement with sensor noise and resolution", ideally "displacement itself";
+    with errors &LENGTH, up to 1.0, of "the position sensor";
+    seeds "sensor and process";
+};
 
 variable_table! {
     TIME = Variable::time();
@@ -19,9 +25,7 @@ variable_table! {
     VOLTAGE_MEASURED = Variable::output("voltage_measured", &VOLTAGE)
         .describe("Mean voltage that acted over the last step, in model exchange the one that acts; wire it to the \
             controller's voltage_applied");
-    POSITION_MEASURED = Variable::output("position_measured", &LENGTH)
-        .describe("Displacement with sensor noise and resolution, one reading per step or per sensor.sample_time; without \
-            the latter in model exchange the displacement itself");
+    POSITION_MEASURED = SENSOR.reading;
     POSITION_DERIVATIVE = Variable::local("der(position)", Kind::Real(&VELOCITY), Variability::Continuous)
         .derivative_of("position")
         .describe("x1' = x2");
@@ -46,16 +50,10 @@ variable_table! {
         .describe("x3 at the start");
     BIAS_FLUX = bias_flux();
     SATURATION_FLUX = saturation_flux();
-    SENSOR_NOISE = Variable::tunable("sensor.noise", Kind::Real(&LENGTH), 0.0)
-        .range(0.0, 1.0)
-        .describe("Standard deviation of the position sensor's white noise, per reading");
-    SENSOR_RESOLUTION = Variable::tunable("sensor.resolution", Kind::Real(&LENGTH), 0.0)
-        .range(0.0, 1.0)
-        .describe("Step of the position sensor's output, 0 for none");
-    SENSOR_SAMPLE_TIME = sample_time();
-    SENSOR_SEED = Variable::parameter("sensor.seed", Kind::Integer, 1.0)
-        .range(0.0, i32::MAX as f64)
-        .describe("Seed of sensor and process noise; the same seed gives the same run on every platform");
+    SENSOR_NOISE = SENSOR.noise;
+    SENSOR_RESOLUTION = SENSOR.resolution;
+    SENSOR_SAMPLE_TIME = SENSOR.sample_time;
+    SENSOR_SEED = SENSOR.seed;
     PROCESS_FLUX_NOISE = Variable::tunable("process.flux_noise", Kind::Real(&MAGNETIC_FLUX), 0.0)
         .range(0.0, 1e3)
         .describe("For studies: standard deviation of white noise added to the flux at each communication point, not in \

@@ -1,10 +1,12 @@
 //! What a controller says of itself.
 
+use crate::unit::sampled::SAMPLE_TIME;
+use crate::unit::variable::{Variable, required_row};
 use crate::unit::{Description, Journal, UnitError};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// Rows that every controller has.
+/// Rows that every controller has, by their names in its table.
 #[derive(Clone, Copy, Debug)]
 pub struct ControllerRows {
     pub sample_time: usize,
@@ -18,6 +20,21 @@ pub struct ControllerRows {
     pub voltage_applied: usize,
     /// Which of the two the observer is told, a [`crate::unit::controller_choices::VoltageSource`].
     pub voltage_source: usize,
+}
+
+impl ControllerRows {
+    /// Found by the compiler.
+    pub const fn of(variables: &[Variable]) -> Self {
+        Self {
+            sample_time: required_row(variables, SAMPLE_TIME),
+            start_delay: required_row(variables, "start_delay"),
+            longest_step: required_row(variables, "longest_step"),
+            tick_time: required_row(variables, "tick_time"),
+            voltage: required_row(variables, "voltage"),
+            voltage_applied: required_row(variables, "voltage_applied"),
+            voltage_source: required_row(variables, "observer.voltage_source"),
+        }
+    }
 }
 
 /// A tick.
@@ -34,7 +51,6 @@ pub struct Sample {
 /// An observer and a law, of a controller with `N` variables: what they remember from tick to tick.
 pub trait ObserverAndLaw<const N: usize>: Clone + Send + Serialize + DeserializeOwned + 'static {
     const DESCRIPTION: &'static Description;
-    const ROWS: ControllerRows;
 
     /// With parameters `values`, before the first tick.
     fn new(values: &[f64; N]) -> Self;

@@ -2,7 +2,7 @@
 
 use core::array::from_fn;
 
-use super::{ObserverAndLaw, Sample};
+use super::{ControllerRows, ObserverAndLaw, Sample};
 use crate::unit::controller_choices::VoltageSource;
 use crate::unit::sample_clock::SampleClock;
 use crate::unit::start_delay::StartDelay;
@@ -24,13 +24,15 @@ pub struct SampledController<C: ObserverAndLaw<N>, const N: usize> {
 }
 
 impl<C: ObserverAndLaw<N>, const N: usize> SampledController<C, N> {
+    const ROWS: ControllerRows = ControllerRows::of(C::DESCRIPTION.variables);
+
     /// The controller with the start values of its table.
     pub fn new() -> Self {
         let values = from_fn(|row| C::DESCRIPTION.variables[row].start);
-        let sample_time = values[C::ROWS.sample_time];
+        let sample_time = values[Self::ROWS.sample_time];
         Self {
             clock: SampleClock::new(sample_time, 0.0),
-            start_delay: StartDelay::new(0.0, values[C::ROWS.start_delay], sample_time),
+            start_delay: StartDelay::new(0.0, values[Self::ROWS.start_delay], sample_time),
             awaits_first_sample: true,
             controller: C::new(&values),
             values,
@@ -42,7 +44,7 @@ impl<C: ObserverAndLaw<N>, const N: usize> SampledController<C, N> {
         if self.start_delay.covers(time) {
             return;
         }
-        let (values, rows) = (&mut self.values, C::ROWS);
+        let (values, rows) = (&mut self.values, Self::ROWS);
         values[rows.tick_time] = time;
         let is_applied = VoltageSource::Applied.is(values[rows.voltage_source]);
         let acting_voltage = values[if is_applied { rows.voltage_applied } else { rows.voltage }];
@@ -80,7 +82,7 @@ impl<C: ObserverAndLaw<N>, const N: usize> Unit for SampledController<C, N> {
     }
 
     fn initialise(&mut self, start_time: f64) -> Result<(), UnitError> {
-        let (values, rows) = (&mut self.values, C::ROWS);
+        let (values, rows) = (&mut self.values, Self::ROWS);
         let sample_time = values[rows.sample_time];
         self.clock = SampleClock::starting(sample_time, start_time)?;
         self.start_delay = StartDelay::new(start_time, values[rows.start_delay], sample_time);
@@ -105,7 +107,7 @@ impl<C: ObserverAndLaw<N>, const N: usize> Unit for SampledController<C, N> {
 
     fn is_consistent(&self, is_initialised: bool) -> bool {
         !is_initialised
-            || self.clock.may_stand_where_it_does(self.values[C::ROWS.sample_time])
+            || self.clock.may_stand_where_it_does(self.values[Self::ROWS.sample_time])
                 && self.controller.is_consistent(&self.values)
     }
 }
@@ -124,7 +126,7 @@ impl<C: ObserverAndLaw<N>, const N: usize> SampledUnit for SampledController<C, 
     }
 
     fn longest_step(&self) -> f64 {
-        self.values[C::ROWS.longest_step]
+        self.values[Self::ROWS.longest_step]
     }
 
     fn cost_of_tick(&self) -> f64 {

@@ -9,7 +9,7 @@ use std::hint::black_box;
 
 use host::{DEFAULT, ENVIRONMENTS, hosted};
 use maglev_fmu::unit::variable::{Causality, Kind, Variable};
-use maglev_fmu::unit::{Description, UNITS};
+use maglev_fmu::unit::{Description, units};
 use proptest::prelude::*;
 use proptest::sample::select;
 
@@ -167,7 +167,7 @@ fn script(unit: &'static str) -> impl Strategy<Value = Script> {
 
 /// Runs `check` with random lives of every unit that `is_meant`.
 fn for_random_lives(is_meant: impl Fn(&str) -> bool, check: impl Fn(&'static str, &Script)) {
-    for unit in UNITS.iter().map(|unit| unit.description.name).filter(|name| is_meant(name)) {
+    for unit in units().map(|unit| unit.description.name).filter(|name| is_meant(name)) {
         let config = ProptestConfig { cases: 40, failure_persistence: None, ..ProptestConfig::default() };
         proptest!(config, |(script in script(unit))| {
             check(unit, &script);

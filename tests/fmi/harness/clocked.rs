@@ -5,13 +5,13 @@ use core::ptr::null;
 
 use maglev_fmu::fmi::fmi3::types::*;
 use maglev_fmu::fmi::fmi3::*;
-use maglev_fmu::unit::{Edition, UNITS};
+use maglev_fmu::unit::{Edition, units};
 
 use super::{Component, OK, Recorder, Standard, fmi3_logger, token};
 
 /// Names of all units that tick.
 pub fn sampled_units() -> impl Iterator<Item = &'static str> {
-    UNITS.iter().map(|unit| unit.description).filter(|unit| unit.is_sampled()).map(|unit| unit.name)
+    units().map(|unit| unit.description).filter(|unit| unit.is_sampled()).map(|unit| unit.name)
 }
 
 /// What fmi3DoStep tells.

@@ -6,14 +6,14 @@ use std::ffi::CString;
 use maglev_fmu::fmi::fmi2::types::{FMI2_MODEL_EXCHANGE, fmi2CallbackFunctions, fmi2EventInfo};
 use maglev_fmu::fmi::fmi2::*;
 use maglev_fmu::fmi::fmi3::*;
-use maglev_fmu::unit::{Description, UNITS};
+use maglev_fmu::unit::{Description, units};
 
 use super::{BOTH, Component, OK, Recorder, Standard, description, fmi2_logger, fmi3_logger};
 
 /// Every combination of standard and plant.
 pub fn plants() -> impl Iterator<Item = (Standard, &'static str)> {
     let is_plant = |description: &&Description| description.offers_model_exchange();
-    let plants = UNITS.iter().map(|unit| unit.description).filter(is_plant).map(|plant| plant.name);
+    let plants = units().map(|unit| unit.description).filter(is_plant).map(|plant| plant.name);
     plants.flat_map(|plant| BOTH.map(|standard| (standard, plant)))
 }
 

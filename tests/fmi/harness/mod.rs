@@ -15,7 +15,7 @@ use maglev_fmu::fmi::fmi2::*;
 use maglev_fmu::fmi::fmi3::types::fmi3Boolean;
 use maglev_fmu::fmi::fmi3::*;
 use maglev_fmu::unit::variable::Causality;
-use maglev_fmu::unit::{Description, Edition, UNITS};
+use maglev_fmu::unit::{Description, Edition, units};
 
 pub use exchange::plants;
 pub use instantiate::{instantiate, instantiate_with};
@@ -40,6 +40,12 @@ pub const BOTH: [Standard; 2] = [Standard::Fmi2, Standard::Fmi3];
 
 /// Every combination of standard and unit.
 pub fn all() -> impl Iterator<Item = (Standard, &'static str)> {
+    let names = units().map(|unit| unit.description.name);
+    BOTH.into_iter().flat_map(move |standard| names.clone().map(move |unit| (standard, unit)))
+}
+
+/// The bearing's units under both standards, for tests that name their variables.
+pub fn bearing() -> impl Iterator<Item = (Standard, &'static str)> {
     BOTH.into_iter().flat_map(|standard| [PLANT, CONTROLLER].map(|unit| (standard, unit)))
 }
 
@@ -72,7 +78,7 @@ pub fn token(unit: &str, edition: Edition) -> CString {
 }
 
 pub fn description(unit: &str) -> &'static Description {
-    UNITS.iter().find(|known| known.description.name == unit).expect("a unit").description
+    units().find(|known| known.description.name == unit).expect("a unit").description
 }
 
 /// An instance with a recording logger. Freed when dropped.

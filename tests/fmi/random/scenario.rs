@@ -8,6 +8,7 @@ use maglev_fmu::fmi::fmi2::types::{FMI2_CO_SIMULATION, FMI2_MODEL_EXCHANGE, fmi2
 use maglev_fmu::fmi::fmi2::{fmi2FreeInstance, fmi2Instantiate};
 use maglev_fmu::fmi::fmi3::types::{fmi3ClockUpdateCallback, fmi3IntermediateUpdateCallback};
 use maglev_fmu::fmi::fmi3::*;
+use maglev_fmu::unit::ADDED_UNITS;
 
 use super::super::harness::Standard;
 use super::super::standard::{Interface, ModelDescription};
@@ -26,7 +27,17 @@ pub struct Scenario {
 }
 
 impl Scenario {
-    /// All of all packages.
+    /// All of the library's packages, in the same order as in [`Scenario::all`].
+    pub fn packaged() -> Vec<Self> {
+        Self::all().into_iter().filter(Self::is_packaged).collect()
+    }
+
+    /// Whether this is not of a unit that a test adds.
+    pub fn is_packaged(&self) -> bool {
+        ADDED_UNITS.iter().all(|added| added.unit.description.name != self.description.name)
+    }
+
+    /// All of all packages, then those of added units.
     pub fn all() -> Vec<Self> {
         let interfaces = [Interface::ModelExchange, Interface::CoSimulation, Interface::ScheduledExecution];
         let all = ModelDescription::all()

@@ -1,8 +1,11 @@
-//! Model descriptions as an importer reads them: the checked-in files, not the tables that they are written from.
+//! Model descriptions as an importer reads them: the checked-in files, not the tables that they are written from. Of units
+//! that a test adds, which no file describes, what would be packaged.
 
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
+use maglev_fmu::package::{Form, model_description};
+use maglev_fmu::unit::{ADDED_UNITS, StartValues};
 use roxmltree::{Document, Node};
 
 use super::super::harness::Standard;
@@ -73,12 +76,22 @@ pub struct ModelDescription {
 }
 
 impl ModelDescription {
-    /// All that are checked in.
+    /// All that are checked in, then those of added units.
     pub fn all() -> &'static [Self] {
         static ALL: LazyLock<Vec<ModelDescription>> = LazyLock::new(|| {
             let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("modelDescription");
             let files = entries(&directory).into_iter().flat_map(|package| entries(&package));
-            files.map(|file| ModelDescription::read(&file)).collect()
+            let checked_in = files.map(|file| {
+                let package = file.parent().unwrap().file_name().unwrap().to_str().unwrap();
+                ModelDescription::read(package, &std::fs::read_to_string(&file).unwrap())
+            });
+            let added = ADDED_UNITS.iter().map(|added| added.unit).flat_map(|unit| {
+                Form::all_of(unit.description).map(|form| {
+                    let text = model_description(unit.description, StartValues::TABLE, form, None);
+                    ModelDescription::read(form.directory(), &text)
+                })
+            });
+            checked_in.chain(added).collect()
         });
         &ALL
     }
@@ -99,9 +112,8 @@ impl ModelDescription {
         self.variables.get(reference as usize)
     }
 
-    fn read(file: &Path) -> Self {
-        let text = std::fs::read_to_string(file).unwrap();
-        let document = Document::parse(&text).unwrap();
+    fn read(package: &str, text: &str) -> Self {
+        let document = Document::parse(text).unwrap();
         let root = document.root_element();
         let standard =
             if root.attribute("fmiVersion") == Some("2.0") { Standard::Fmi2 } else { Standard::Fmi3 };
@@ -143,7 +155,7 @@ impl ModelDescription {
         Self {
             standard,
             name: root.attribute("modelName").unwrap().to_owned(),
-            package: file.parent().unwrap().file_name().unwrap().to_str().unwrap().to_owned(),
+            package: package.to_owned(),
             token: root.attribute("guid").or(root.attribute("instantiationToken")).unwrap().to_owned(),
             state_count: variables.iter().filter(|variable| variable.is_state).count(),
             event_indicator_count: match standard {

@@ -1,6 +1,8 @@
 //! What several test programs and benches share; what one of them uses alone is a module of that program.
 
 pub mod bearing_loop;
+#[cfg(feature = "tools")]
+mod cart;
 pub mod component;
 #[cfg(feature = "tools")]
 pub mod packages;
