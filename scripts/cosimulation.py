@@ -141,8 +141,12 @@ class Fmu:
         """What parameter files call the unit of a value."""
         variable = self._variable(name)
         if variable.type == "Enumeration":
-            items = enumeration_items(variable).items()
-            return f"item {next((item for item, number in items if value in (item, number)), '?')}"
+            items = enumeration_items(variable)
+            item = next((item for item, number in items.items() if value in (item, number)), None)
+            if item is None:
+                expected = ", ".join(f"{number} ({item})" for item, number in items.items())
+                raise ValueError(f"{name} = {value!r}: expected one of {expected}")
+            return f"item {item}"
         if variable.type in ("Boolean", "Integer", "Int32"):
             return "boolean" if variable.type == "Boolean" else "integer"
         return variable.unit or variable.declaredType.unit

@@ -54,10 +54,13 @@ impl Instance {
             return Ok(StepEnd { is_event: false, is_early: false });
         };
         let duration = self.communication.duration(point, step_size)?;
-        let clock = sampled(&mut *self.unit)?.clock_mut();
+        let unit = sampled(&mut *self.unit)?;
         let mut is_early = false;
-        match clock.until_tick_within(duration) {
+        match unit.clock().until_tick_within(duration) {
             Some(wait) if may_return_early => {
+                // However long the step that was asked for, the part up to the tick computes nothing.
+                unit.require_bearable_step(wait)?;
+                let clock = unit.clock_mut();
                 clock.pass(wait);
                 // The importer's time may be off by rounding; a step never goes back nor beyond its end.
                 let reached = clock.next_time().max(point).min(point + step_size);

@@ -41,6 +41,12 @@ pub trait SampledUnit {
                 affordable => affordable?,
             }
         }
+        self.require_bearable_step(duration)
+    }
+
+    /// Refuses a step over `duration` \[s\] that the loop would not bear.
+    #[inline]
+    fn require_bearable_step(&self, duration: f64) -> Result<(), UnitError> {
         check_step(duration, self.longest_step())
     }
 }

@@ -21,7 +21,7 @@ impl Component {
         let text = self.recorder.messages().last().map(|message| message.text.clone()).unwrap_or_default();
         self.assert_refused(status, said);
         assert_eq!(self.get("time"), 0.0);
-        let number = text.split("expected at most ").nth(1).and_then(|rest| rest.split(' ').next());
+        let number = text.split("expected at most ").nth(1).and_then(|rest| rest.split(' ').find(|word| word.starts_with(char::is_numeric)));
         number.and_then(|number| number.parse().ok()).expect("a number of seconds")
     }
 }
@@ -159,6 +159,27 @@ fn steps_beyond_longest_step_are_refused_with_callbacks_and_without() {
             assert_eq!(component.get("time"), 0.0);
             assert_eq!(component.step(0.0, 1e-3), OK, "{unit}");
         }
+    }
+}
+
+/// Guards: a step up to a tick that was longer than `longest_step`, where the importer had asked for even more.
+#[test]
+fn longest_step_holds_for_the_part_of_a_step_up_to_a_tick() {
+    for unit in sampled_units() {
+        let choices = Choices { event_mode: true, early_return: true, intermediate_update: None };
+        let component = Component::co_simulation(unit, choices);
+        let sample_time = component.get("sample_time");
+        assert_eq!(component.set("longest_step", sample_time / 2.0), OK);
+        component.initialise(0.0);
+        assert_eq!(component.enter_step_mode(), OK);
+        component.recorder.clear();
+        let limit = sample_time / 2.0;
+        let said = format!("a step of {sample_time} s: expected at most longest_step = {limit} s");
+        component.assert_refused_keeping(component.step_to_event(0.0, 1e12).status, &[&said]);
+        let step = component.step_to_event(0.0, limit);
+        assert_eq!((step.status, step.is_event, step.reached), (OK, false, limit), "{unit}");
+        let step = component.step_to_event(limit, 1e12);
+        assert_eq!((step.status, step.is_event, step.reached), (OK, true, sample_time), "{unit}");
     }
 }
 

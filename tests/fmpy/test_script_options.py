@@ -225,6 +225,7 @@ UNIT = '"unit": "MaglevRigController"'
         (f'{{{UNIT}, "values": {{"observer.kind": true}}}}', "observer.kind = True: expected a value of type Enumeration"),
         (f'{{{UNIT}, "values": {{"observer.kind": 99999999999999999999}}}}', "observer.kind = 99999999999999999999: expected a value"),
         (f'{{{UNIT}, "values": {{"observer.bandwidth": 1}}, "units": {{"observer.bandwidth": "kg"}}}}', "observer.bandwidth is given in 'kg': expected 1/s"),
+        (f'{{{UNIT}, "values": {{"law.kind": 2.5}}, "units": {{"law.kind": "item pid"}}}}', "law.kind = 2.5: expected one of"),
         (f'{{{UNIT}, "values": {{}}, "units": {{"sample_time": "s"}}}}', "'sample_time' has a unit and no value"),
         (f'{{{UNIT}, "values": {{"\\u001b[2J": 1}}}}', r"has no variable '\x1b[2J'"),
         ('{"unit": "\\u001b[2J", "values": {}}', r"is for '\x1b[2J': expected a file for MaglevRigController"),
