@@ -2,6 +2,8 @@
 
 #[cfg(feature = "tools")]
 pub mod causes;
+#[cfg(feature = "tools")]
+pub mod chart;
 pub mod controller;
 #[cfg(feature = "tools")]
 mod file;

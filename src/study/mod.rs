@@ -7,7 +7,6 @@ pub mod ball;
 pub mod ball_monte_carlo;
 pub mod bearing;
 pub mod bearing_observers;
-pub mod chart;
 pub mod claim;
 mod error;
 mod loop_packages;
@@ -21,7 +20,7 @@ use std::path::Path;
 
 pub use error::StudyError;
 
-use chart::Figure;
+use crate::chart::Figure;
 use claim::Claim;
 
 /// What an experiment yields.

@@ -2,7 +2,7 @@
 
 use super::runs::{FLUX_ERRORS, GAINS, POORLY_EXCITED_GAINS, RATES, Runs};
 use super::scenario::{FLUX, POSITION, Run, VELOCITY, carrying_flux};
-use crate::study::chart::{Figure, Panel, Series, Stroke};
+use crate::chart::{Figure, Panel, Series, Stroke};
 use crate::study::{FigureWithData, Table};
 
 const TIME: &str = "time [s]";

@@ -5,7 +5,7 @@ use super::contender::{ADAPTIVE_OFFSET, ADAPTIVE_RESISTANCE, Contender, NEWTON};
 use super::spread::{Draw, SPREADS};
 use super::trial::Outcome;
 use super::tuning::{GAINS, NOISES, NORMALISATIONS, Score, Tuning};
-use crate::study::chart::{Figure, Panel, Series, Stroke};
+use crate::chart::{Figure, Panel, Series, Stroke};
 use crate::study::{FigureWithData, Table};
 
 /// Noiseless runs stand here on the axis of the noise \[A\].

@@ -1,7 +1,7 @@
 //! Figures 2 to 6, laid out as their captions say.
 
 use super::{BIAS_FLUXES, LAWS, POSITIONS, Run, Runs, VOLTAGES};
-use crate::study::chart::{Figure, Panel, Series, Stroke};
+use crate::chart::{Figure, Panel, Series, Stroke};
 use crate::study::{FigureWithData, Table};
 
 /// Names, units and factors by which the three states are shown.

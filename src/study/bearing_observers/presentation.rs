@@ -3,7 +3,7 @@
 use super::comparison::{Comparison, Score};
 use super::contenders::CONTENDERS;
 use super::{NOISES, SAMPLE_TIMES, seeds};
-use crate::study::chart::{Figure, Panel, Series, Stroke};
+use crate::chart::{Figure, Panel, Series, Stroke};
 use crate::study::report::quantity;
 use crate::study::{FigureWithData, Summary, Table};
 

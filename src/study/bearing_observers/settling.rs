@@ -1,7 +1,7 @@
 //! How fast the laws bring the rotor to the centre: the printed law (8a) against the flux cascade, on estimates.
 
+use crate::chart::{Figure, Panel, Series, Stroke};
 use crate::host::{Trace, Value};
-use crate::study::chart::{Figure, Panel, Series, Stroke};
 use crate::study::loop_packages::{LoopPackages, Parameter};
 use crate::study::report::quantity;
 use crate::study::{FigureWithData, StudyError, Summary, Table};

@@ -4,8 +4,8 @@ use super::observers::NAMES;
 use super::ranking::{Comparison, NOISES, REFERENCES, Start};
 use super::recording::SENSOR;
 use super::simulation::{Measurement, Run};
+use crate::chart::{Figure, Panel, Series, Stroke};
 use crate::observer::han_function::HanFunction;
-use crate::study::chart::{Figure, Panel, Series, Stroke};
 use crate::study::{FigureWithData, Table};
 
 const TIME: &str = "time [s]";

@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 
+use crate::chart::{Figure, Panel, Series, Stroke};
 use crate::host::Value;
-use crate::study::chart::{Figure, Panel, Series, Stroke};
 use crate::study::loop_packages::{LoopPackages, Parameter};
 use crate::study::report::quantity;
 use crate::study::rig::observers::KINDS;

@@ -3,10 +3,10 @@
 use rayon::prelude::*;
 
 use super::estimators::{ExtendedStateEstimator, velocity_error};
+use crate::chart::{Figure, Panel, Series, Stroke};
 use crate::host::Value;
 use crate::observer::extended_state::{ExtendedState, gains_from_bandwidth};
 use crate::observer::sampled_extended_state::{ExtendedStateObserver, ExtendedStateSettings, Form};
-use crate::study::chart::{Figure, Panel, Series, Stroke};
 use crate::study::loop_packages::LoopPackages;
 use crate::study::report::quantity;
 use crate::study::rig::observers::KINDS;

@@ -1,7 +1,7 @@
 //! How a search went.
 
 use super::swarm::Iteration;
-use crate::study::chart::{Figure, Panel, Series, Stroke};
+use crate::chart::{Figure, Panel, Series, Stroke};
 use crate::study::{FigureWithData, Table};
 
 const ITERATION: &str = "iteration";
