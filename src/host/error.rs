@@ -129,6 +129,8 @@ pub enum HostError {
     #[error("the saved state was taken from another instance than `{instance}`")]
     ForeignState { instance: String },
     /// A master knows a `controller` and a `plant`, nothing else.
+    #[error("no wire leads to {variable} of {unit}")]
+    NoWire { unit: String, variable: String },
     #[error(
         "cannot record `{variable}` of `{unit}`: the units of the loop are `controller` and `plant`",
         variable = printable(variable)

@@ -103,6 +103,19 @@ impl TwoUnitLoop {
         Ok(())
     }
 
+    /// Lets the wire to this input of the plant add `offset`, in the variable's unit: a drive whose zero is off.
+    ///
+    /// # Errors
+    /// Those of [`Instance::variable`], and [`HostError::NoWire`] if none with reals leads there.
+    pub fn add_offset(&mut self, input: &str, offset: f64) -> Result<()> {
+        let target = self.plant.variable(input)?.value_reference();
+        if self.to_plant.add_offset(target, offset) {
+            Ok(())
+        } else {
+            Err(HostError::NoWire { unit: self.plant.name().to_owned(), variable: input.to_owned() })
+        }
+    }
+
     /// Initialises both units at `start_time`, exchanges all values once, and fixes the step size (all in seconds).
     ///
     /// # Errors
