@@ -5,6 +5,7 @@ pub mod causes;
 #[cfg(feature = "tools")]
 pub mod chart;
 pub mod controller;
+mod exchange_order;
 #[cfg(feature = "tools")]
 mod file;
 pub mod fmi;

@@ -4,16 +4,7 @@ use super::error::{HostError, Result};
 use super::instance::Instance;
 use super::route::Route;
 use super::trace::{Probe, Trace};
-
-/// In which order values travel between the two units of a loop.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ExchangeOrder {
-    /// As on a rig with a fast processor: the plant is sampled, the controller computes, the plant moves on with the
-    /// new command.
-    ControllerFirst,
-    /// As most masters do: both step, then all values are exchanged. The command arrives one step late.
-    Parallel,
-}
+use crate::exchange_order::ExchangeOrder;
 
 /// A controller and a plant that step together at the communication points `start + k * step_size`.
 ///

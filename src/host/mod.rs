@@ -39,6 +39,7 @@ mod saved_state;
 mod trace;
 mod value;
 
+pub use crate::exchange_order::ExchangeOrder;
 pub use crate::fmi::FmiVersion;
 pub use archive::Archive;
 pub use description::{
@@ -50,7 +51,7 @@ pub use fmu::Fmu;
 pub use instance::{Instance, Logging};
 pub use journal::LogMessage;
 pub use limits::Limits;
-pub use master::{ExchangeOrder, TwoUnitLoop};
+pub use master::TwoUnitLoop;
 pub use saved_state::SavedState;
 pub use trace::Trace;
 pub use value::{Handle, Value};
