@@ -46,11 +46,16 @@ pub struct Claim {
 }
 
 impl Claim {
-    /// What `source` says; not judged so far.
-    pub fn new(id: &'static str, source: &'static str, statement: impl Into<String>) -> Self {
-        let statement = statement.into();
-        let verdict = Verdict::CannotBeJudged;
-        Self { id, statement, source, verdict, measured: Vec::new(), criterion: String::new() }
+    /// Something that `source` says; not judged so far.
+    pub fn new(id: &'static str, source: &'static str) -> Self {
+        let (statement, criterion) = (String::new(), String::new());
+        Self { id, statement, source, verdict: Verdict::CannotBeJudged, measured: Vec::new(), criterion }
+    }
+
+    /// What it says, in our words.
+    pub fn stating(mut self, statement: impl Into<String>) -> Self {
+        self.statement = statement.into();
+        self
     }
 
     /// Adds a number in `unit`.

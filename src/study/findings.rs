@@ -93,6 +93,16 @@ impl Table {
     }
 }
 
+/// Columns of a run with true and estimated states of a magnet's flux dynamics, and their headers.
+pub const STATES_AND_ESTIMATES: [(&str, &str); 6] = [
+    ("plant.position", "position [m]"),
+    ("controller.estimate.position", "estimate of position [m]"),
+    ("plant.velocity", "velocity [m/s]"),
+    ("controller.estimate.velocity", "estimate of velocity [m/s]"),
+    ("plant.flux", "flux [Wb]"),
+    ("controller.estimate.flux", "estimate of flux [Wb]"),
+];
+
 /// A run with its legend entry.
 pub type Labelled<'a> = (String, &'a Run);
 

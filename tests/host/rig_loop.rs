@@ -2,8 +2,8 @@
 
 use maglev_fmu::host::{ExchangeOrder, TwoUnitLoop};
 use maglev_fmu::package::FmiVersion::{self, Three, Two};
+use maglev_fmu::unit::Silence;
 use maglev_fmu::unit::system::RIG;
-use maglev_fmu::unit::{Silence, system};
 use maglev_fmu_test::closed_loop::closed_loop;
 use maglev_fmu_test::packages;
 use maglev_fmu_test::rig::{APPLIED, CURRENT, METRES, NONLINEAR, THROUGH_EXTENDED_STATE};

@@ -3,7 +3,7 @@
 use super::runs::{FLUX_ERRORS, GAINS, POORLY_EXCITED_GAINS, RATES, Runs};
 use super::scenario::{EXCITATION, FLUX_ERROR, REFERENCE, TRACKING_ERROR, carrying_flux};
 use crate::chart::{Panel, Stroke};
-use crate::study::findings::{FigureWithData, Labelled, Table, labelled, lines};
+use crate::study::findings::{FigureWithData, Labelled, STATES_AND_ESTIMATES, Table, labelled, lines};
 use crate::study::run::Run;
 
 const TIME: &str = "time [s]";
@@ -83,17 +83,12 @@ fn voltage_panel(title: &str, runs: &[Labelled<'_>], end: f64) -> Panel {
 
 /// Time and, per run, states, estimates, reference, current, voltage and excitation in SI units.
 fn table(runs: &[Labelled<'_>]) -> Table {
-    let each = [
-        ("plant.position", "position [m]"),
-        ("controller.estimate.position", "estimate of position [m]"),
-        ("plant.velocity", "velocity [m/s]"),
-        ("controller.estimate.velocity", "estimate of velocity [m/s]"),
-        ("plant.flux", "flux [Wb]"),
-        ("controller.estimate.flux", "estimate of flux [Wb]"),
+    let others = [
         ("plant.current", "current [A]"),
         ("controller.voltage", "voltage [V]"),
         (EXCITATION, "excitation [1]"),
     ];
+    let each = [&STATES_AND_ESTIMATES[..], &others].concat();
     Table::of_runs(runs, &[(REFERENCE, "reference [m]")], &each)
 }
 
@@ -115,8 +110,8 @@ fn flux_errors(number: u32, name: &str, runs: &[Run], full_state: &Run, shown: f
     FigureWithData::new(format!("ball_figure_{number}"), title, table(&runs))
         .caption(format!(
             "Figure {number}. Position for the {name} when the observer starts with a flux that is too \
-             small or too large by 5 and 10 % of lam0, the flux that carries the ball; the estimate of \
-             the offset is held for the first 0.1 s. Sampled at 0.1 ms, rows of 1 ms. Magnitudes below \
+             small or too large by 5 and 10 % of lam0, the flux that carries the ball; the estimate of the \
+             offset is held for the first 0.1 s. Sampled at 0.1 ms, rows of 1 ms. Magnitudes below \
              {FLOOR:e} stand there."
         ))
         .panels(3, panels)
@@ -136,8 +131,8 @@ fn gains(number: u32, name: &str, runs: &[Run]) -> FigureWithData {
     let title = format!("Figure {number}: adaptation gains, {name}, DREM, flux offset +10 %");
     FigureWithData::new(format!("ball_figure_{number}"), title, table(&runs))
         .caption(format!(
-            "Figure {number}. Effect of the adaptation gain gamma on the observation errors for the \
-             {name}. The unit of gamma goes with kappa, 1e9 for the sinusoids and 1e10 for the steps."
+            "Figure {number}. Effect of the adaptation gain gamma on the observation errors for the {name}. \
+             The unit of gamma goes with kappa, 1e9 for the sinusoids and 1e10 for the steps."
         ))
         .panels(3, panels)
 }
@@ -200,9 +195,9 @@ fn figure_7(runs: &Runs) -> FigureWithData {
         .caption(format!(
             "Figure 7. The paper's last figure shows a steady-state error that grows with the adaptation \
              gain. A hypothesis that reproduces it: filters that start from zero, no start-up hold, and \
-             little excitation (kappa = 1e4 instead of 1e10, steps, the observer only watching). The \
-             wrong start then enters the estimate in proportion to the gain and nothing forgets it. lam0 \
-             = {:.3} mWb.",
+             little excitation (kappa = 1e4 instead of 1e10, steps, the observer only watching). The wrong \
+             start then enters the estimate in proportion to the gain and nothing forgets it. lam0 = {:.3} \
+             mWb.",
             1e3 * carrying_flux()
         ))
         .panels(3, panels)

@@ -117,8 +117,8 @@ fn poorly_excited(runs: &Runs) -> Summary {
         ]
     });
     Summary::new(
-        "Steady-state error and adaptation gain: |flux error| / lam0 after 10 s of steps with kappa = \
-             1e4, no hold (figure 7)",
+        "Steady-state error and adaptation gain: |flux error| / lam0 after 10 s of steps with kappa = 1e4, \
+         no hold (figure 7)",
         ["gamma [1/s]", "filters from zero", "continuous", "filters from rest"],
         rows,
     )
@@ -144,8 +144,8 @@ fn sample_times(runs: &Runs) -> Summary {
         std::iter::once(quantity(1e3 * sample_time, "ms")).chain(cells).collect()
     });
     Summary::new(
-        "Sample time: rms flux error and rms |y - y*| of the last of 6 s, flux offset +10 % at the \
-             start, no noise",
+        "Sample time: rms flux error and rms |y - y*| of the last of 6 s, flux offset +10 % at the start, \
+         no noise",
         ["T", "drem, sinusoids", "drem, steps", "polynomial_newton, sinusoids", "polynomial_newton, steps"],
         rows,
     )
@@ -174,8 +174,8 @@ fn frozen(runs: &Runs) -> Summary {
         ]
     });
     Summary::new(
-        "A frozen flux error of 2 % at y* = 1 mm: the loop stays stable but biased; the mechanical \
-             gains reduce the bias, so they do not explain an error that grows with a gain",
+        "A frozen flux error of 2 % at y* = 1 mm: the loop stays stable but biased; the mechanical gains \
+         reduce the bias, so they do not explain an error that grows with a gain",
         ["w_p = w_y", "y - y* after 3 s", "in closed form", "error of the velocity estimate"],
         rows,
     )

@@ -36,23 +36,20 @@ fn on_both(what: &str, values: [f64; 2]) -> impl Iterator<Item = (String, f64)> 
 fn adaptive_survives(campaign: &Campaign) -> Claim {
     let runs = f64::from(campaign.runs(A));
     let adaptive = survivors(campaign, A, ADAPTIVE_RESISTANCE);
-    Claim::new(
-        "adaptive_newton_survives_spread_a",
-        BEYOND,
-        format!(
+    Claim::new("adaptive_newton_survives_spread_a", BEYOND)
+        .stating(format!(
             "Learning the resistance keeps the ball up when nothing is known exactly ({}).",
             SPREADS[A].text()
-        ),
-    )
-    .measured_each(on_both(&format!("survivors of {runs}, adaptive Newton, resistance"), adaptive), "1")
-    .measured_each(on_both("the same, voltage offset", survivors(campaign, A, ADAPTIVE_OFFSET)), "1")
-    .measured_each(on_both("Newton", survivors(campaign, A, NEWTON)), "1")
-    .measured_each(on_both("DREM, retuned", survivors(campaign, A, DREM)), "1")
-    .judged(
-        adaptive.iter().all(|count| *count >= 0.995 * runs),
-        "At least 995 of 1000 runs of 4 s on either reference touch no stop. Parameters are drawn \
+        ))
+        .measured_each(on_both(&format!("survivors of {runs}, adaptive Newton, resistance"), adaptive), "1")
+        .measured_each(on_both("the same, voltage offset", survivors(campaign, A, ADAPTIVE_OFFSET)), "1")
+        .measured_each(on_both("Newton", survivors(campaign, A, NEWTON)), "1")
+        .measured_each(on_both("DREM, retuned", survivors(campaign, A, DREM)), "1")
+        .judged(
+            adaptive.iter().all(|count| *count >= 0.995 * runs),
+            "At least 995 of 1000 runs of 4 s on either reference touch no stop. Parameters are drawn \
              uniformly within their spread, the same draws for every estimator.",
-    )
+        )
 }
 
 fn adaptive_is_accurate(campaign: &Campaign) -> Claim {
@@ -60,33 +57,30 @@ fn adaptive_is_accurate(campaign: &Campaign) -> Claim {
         |who: usize, of: fn(&Outcome) -> f64| both(|reference| median(campaign.of(A, reference, who), of));
     let position = value(ADAPTIVE_RESISTANCE, Outcome::position).map(|error| 1e3 * error);
     let flux = value(ADAPTIVE_RESISTANCE, Outcome::flux);
-    Claim::new(
-        "adaptive_newton_is_accurate",
-        BEYOND,
-        "It follows the sinusoids within 0.06 mm and the steps within 0.04 mm.",
-    )
-    .measured_each(on_both("median rms |y - y*|", position), "mm")
-    .measured_each(on_both("median rms flux error, share of lam0", flux), "1")
-    .judged(
-        position[0] <= 0.06 && position[1] <= 0.04,
-        "Median over all runs of spread A, lost ones counted as infinite, of the rms |y - y*| from 2 \
-             to 4 s.",
-    )
+    Claim::new("adaptive_newton_is_accurate", BEYOND)
+        .stating("It follows the sinusoids within 0.06 mm and the steps within 0.04 mm.")
+        .measured_each(on_both("median rms |y - y*|", position), "mm")
+        .measured_each(on_both("median rms flux error, share of lam0", flux), "1")
+        .judged(
+            position[0] <= 0.06 && position[1] <= 0.04,
+            "Median over all runs of spread A, lost ones counted as infinite, of the rms |y - y*| from 2 to \
+             4 s.",
+        )
 }
 
 fn drem_under_noise(tuning: &Tuning, campaign: &Campaign) -> Claim {
     let loudest = NOISES.len() - 1;
     let best = [0, 1].map(|reference| tuning.scores[reference][loudest][tuning.best(reference, loudest)]);
     let usable = best.iter().all(|score| score.is_within(0.01));
-    let mut claim = Claim::new(
-        "drem_stands_noise_of_1_ma",
-        BEYOND,
-        "DREM, retuned for it, estimates the flux to 1 % in spite of 1 mA of noise.",
-    )
-    .measured_each(
-        on_both("rms flux error of the best setting at 1 mA, share of lam0", best.map(|score| score.flux)),
-        "1",
-    );
+    let mut claim = Claim::new("drem_stands_noise_of_1_ma", BEYOND)
+        .stating("DREM, retuned for it, estimates the flux to 1 % in spite of 1 mA of noise.")
+        .measured_each(
+            on_both(
+                "rms flux error of the best setting at 1 mA, share of lam0",
+                best.map(|score| score.flux),
+            ),
+            "1",
+        );
     for (noise, deviation) in NOISES.iter().enumerate() {
         let fine = both(|reference| {
             tuning.scores[reference][noise].iter().filter(|score| score.is_within(0.01)).count() as f64
@@ -198,9 +192,9 @@ fn tuning_table(tuning: &Tuning) -> Summary {
     });
     Summary::new(
         format!(
-            "How DREM was tuned: {} settings at T = 0.1 ms, exact parameters, flux offsets of +-5 and \
-             +-10 % (8 % rms is what not adapting leaves). The best one loses fewest runs and then has \
-             the smallest flux error; each spread uses the one for its noise and reference",
+            "How DREM was tuned: {} settings at T = 0.1 ms, exact parameters, flux offsets of +-5 and +-10 \
+             % (8 % rms is what not adapting leaves). The best one loses fewest runs and then has the \
+             smallest flux error; each spread uses the one for its noise and reference",
             tuning.settings.len()
         ),
         [
@@ -266,10 +260,9 @@ pub fn advice(tuning: &Tuning, contenders: &[Contender], campaign: &Campaign) ->
             choices.join("; ")
         ),
         format!(
-            "DREM is for reproducing the paper: with exact parameters its best setting found keeps the \
-             flux error below 1 % in all trial runs {} (current noises of {} were tried). A wrong \
-             resistance or a voltage offset, which its open integration sums up, loses {} of {} balls in \
-             spread A.",
+            "DREM is for reproducing the paper: with exact parameters its best setting found keeps the flux \
+             error below 1 % in all trial runs {} (current noises of {} were tried). A wrong resistance or \
+             a voltage offset, which its open integration sums up, loses {} of {} balls in spread A.",
             limits.join(" and "),
             NOISES.map(|noise| quantity(1e3 * noise, "mA")).join(", "),
             lost(A, DREM),
@@ -277,10 +270,9 @@ pub fn advice(tuning: &Tuning, contenders: &[Contender], campaign: &Campaign) ->
         ),
         format!(
             "With a real coil take polynomial_newton_adaptive and let it learn the resistance: {} of {} \
-             balls of spread A are lost, against {} with polynomial_newton and {} when it learns a \
-             voltage offset instead. Set observer.startup_hold to 0.02 s for them: a wrong flux should be \
-             corrected before it moves the ball. polynomial_newton alone is for models that are known \
-             exactly.",
+             balls of spread A are lost, against {} with polynomial_newton and {} when it learns a voltage \
+             offset instead. Set observer.startup_hold to 0.02 s for them: a wrong flux should be corrected \
+             before it moves the ball. polynomial_newton alone is for models that are known exactly.",
             lost(A, ADAPTIVE_RESISTANCE),
             2 * campaign.runs(A),
             lost(A, NEWTON),

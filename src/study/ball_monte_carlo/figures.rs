@@ -20,8 +20,8 @@ pub fn all(tuning: &Tuning, contenders: &[Contender], campaign: &Campaign) -> Ve
             "Monte-Carlo: deviation from the wanted position",
             data(contenders, campaign),
         ),
-        "Share of all runs whose rms |y - y*| from 2 to 4 s is below the value on the axis. A curve \
-             ends at the share of runs that survive.",
+        "Share of all runs whose rms |y - y*| from 2 to 4 s is below the value on the axis. A curve ends at \
+         the share of runs that survive.",
         contenders,
         campaign,
         ("rms |y - y*| [mm]", 1e3, Outcome::position),
@@ -33,7 +33,7 @@ pub fn all(tuning: &Tuning, contenders: &[Contender], campaign: &Campaign) -> Ve
             medians(contenders, campaign),
         ),
         "The same for the error of the flux estimate: who survives without estimating the flux is not \
-             better off.",
+         better off.",
         contenders,
         campaign,
         ("rms flux error / lam0 [%]", 100.0, Outcome::flux),
@@ -245,8 +245,8 @@ fn tuning_figure(tuning: &Tuning) -> FigureWithData {
     FigureWithData::new("ball_drem_tuning", "DREM at its best under noise, exact parameters", table)
         .caption(format!(
             "For every gain the best of six sets of filters at T = 0.1 ms, without (solid) and with \
-             normalisation (dashed): {} settings for each noise and reference, flux offsets of +-5 and \
-             +-10 %. Errors are those of the runs that are not lost; an rms flux error of 8 % is what not \
+             normalisation (dashed): {} settings for each noise and reference, flux offsets of +-5 and +-10 \
+             %. Errors are those of the runs that are not lost; an rms flux error of 8 % is what not \
              adapting leaves.",
             tuning.settings.len()
         ))

@@ -2,7 +2,7 @@
 
 use super::{BIAS_FLUXES, LAWS, POSITIONS, Runs, VOLTAGES};
 use crate::chart::{Panel, Stroke};
-use crate::study::findings::{FigureWithData, Labelled, Table, labelled, lines};
+use crate::study::findings::{FigureWithData, Labelled, STATES_AND_ESTIMATES, Table, labelled, lines};
 use crate::study::run::Run;
 
 /// States, and by which names, units and factors they are shown.
@@ -56,16 +56,8 @@ fn comparison_panel(title: String, run: &Run, state: usize, range: Option<(f64, 
 
 /// Time and, per run, states, estimates and voltage in SI units.
 fn table(runs: &[Labelled<'_>]) -> Table {
-    let each = [
-        ("plant.position", "position [m]"),
-        ("controller.estimate.position", "estimate of position [m]"),
-        ("plant.velocity", "velocity [m/s]"),
-        ("controller.estimate.velocity", "estimate of velocity [m/s]"),
-        ("plant.flux", "flux [Wb]"),
-        ("controller.estimate.flux", "estimate of flux [Wb]"),
-        ("controller.voltage", "voltage [V]"),
-    ];
-    Table::of_runs(runs, &[], &each)
+    let voltage = [("controller.voltage", "voltage [V]")];
+    Table::of_runs(runs, &[], &[&STATES_AND_ESTIMATES[..], &voltage].concat())
 }
 
 fn figure_2(runs: &Runs) -> FigureWithData {
@@ -123,8 +115,8 @@ fn figure_4(runs: &Runs) -> FigureWithData {
     let all: Vec<Labelled<'_>> = observed.into_iter().chain(fed_back).collect();
     FigureWithData::new("bearing_figure_4", title, table(&all))
         .caption(
-            "Figure 4. Responses of the observer-based closed loop (3), (8a) for different initial values of \
-             the controller output, compared with state feedback without an observer.",
+            "Figure 4. Responses of the observer-based closed loop (3), (8a) for different initial values \
+             of the controller output, compared with state feedback without an observer.",
         )
         .panels(3, panels)
 }
@@ -156,8 +148,8 @@ fn figure_6(runs: &Runs) -> FigureWithData {
     let title = "Figure 6: zero and low bias flux, law (8a), x1(0) = 10 mm";
     FigureWithData::new("bearing_figure_6", title, table(&runs))
         .caption(
-            "Figure 6. Observer-based feedback responses with zero bias flux and with bias fluxes of 100 and \
-             1000 µWb, control law (8a).",
+            "Figure 6. Observer-based feedback responses with zero bias flux and with bias fluxes of 100 \
+             and 1000 µWb, control law (8a).",
         )
         .panels(3, (0..3).map(|state| state_panel("", &runs, state)).chain(others))
 }

@@ -52,20 +52,19 @@ fn reduced_observer(packages: &LoopPackages) -> Result<Claim, StudyError> {
         }
     }
     let printed = largest(errors[..3].iter().map(|(_, error)| error));
-    Ok(Claim::new(
-        "reduced_observer_estimates_the_flux",
-        "Section 3.1",
-        "The reduced-order Newton observer with a low-pass filter for the velocity can be applied to \
+    Ok(Claim::new("reduced_observer_estimates_the_flux", "Section 3.1")
+        .stating(
+            "The reduced-order Newton observer with a low-pass filter for the velocity can be applied to \
              estimate the flux.",
-    )
-    .measured_each(errors, "Wb")
-    .judged(
-        printed <= 0.01 * SIGNAL,
-        "Without noise, true state fed back: the rms flux error after 0.5 s is at most 1 % of the \
-             flux peak for every T_s. As printed it is biased: the backward difference lags the velocity \
-             by half a sample and the filter by T_s, which (7) takes for acceleration. The compensated \
-             variant stands beside it.",
-    ))
+        )
+        .measured_each(errors, "Wb")
+        .judged(
+            printed <= 0.01 * SIGNAL,
+            "Without noise, true state fed back: the rms flux error after 0.5 s is at most 1 % of the flux \
+             peak for every T_s. As printed it is biased: the backward difference lags the velocity by half \
+             a sample and the filter by T_s, which (7) takes for acceleration. The compensated variant \
+             stands beside it.",
+        ))
 }
 
 fn step_size(packages: &LoopPackages) -> Result<Claim, StudyError> {
@@ -78,18 +77,15 @@ fn step_size(packages: &LoopPackages) -> Result<Claim, StudyError> {
     let errors = ALPHAS.into_iter().map(error).collect::<Result<Vec<f64>, StudyError>>()?;
     let falls = falls(&errors);
     let names = ALPHAS.map(|alpha| format!("rms flux error, alpha = {alpha}, d = 1"));
-    Ok(Claim::new(
-        "smaller_alpha_rejects_noise",
-        "Remark 2",
-        "Decreasing alpha improves the noise rejection of the observer.",
-    )
-    .measured_each(names.into_iter().zip(errors), "Wb")
-    .judged(
-        falls,
-        "Sensor noise of 1e-9 m, d = 1, start at the true flux, 10 seeds: the rms flux error falls \
-             with each smaller alpha. Whether it falls far enough to be of use is another question: the \
-             flux itself peaks at 0.15 Wb.",
-    ))
+    Ok(Claim::new("smaller_alpha_rejects_noise", "Remark 2")
+        .stating("Decreasing alpha improves the noise rejection of the observer.")
+        .measured_each(names.into_iter().zip(errors), "Wb")
+        .judged(
+            falls,
+            "Sensor noise of 1e-9 m, d = 1, start at the true flux, 10 seeds: the rms flux error falls with \
+             each smaller alpha. Whether it falls far enough to be of use is another question: the flux \
+             itself peaks at 0.15 Wb.",
+        ))
 }
 
 fn iterations(packages: &LoopPackages) -> Result<Claim, StudyError> {
@@ -98,17 +94,14 @@ fn iterations(packages: &LoopPackages) -> Result<Claim, StudyError> {
     let errors = ITERATIONS.into_iter().map(error).collect::<Result<Vec<f64>, StudyError>>()?;
     let undesirable = errors[3] > errors[0];
     let names = ITERATIONS.map(|d| format!("rms flux error, d = {d}"));
-    Ok(Claim::new(
-        "more_iterations_may_hurt_under_noise",
-        "Remark 1",
-        "With measurement noise increasing d may have an undesirable effect.",
-    )
-    .measured_each(names.into_iter().zip(errors), "Wb")
-    .judged(
-        undesirable,
-        "Sensor noise of 1e-9 m, alpha = 1, start at the true flux, 10 seeds: the rms flux error is \
+    Ok(Claim::new("more_iterations_may_hurt_under_noise", "Remark 1")
+        .stating("With measurement noise increasing d may have an undesirable effect.")
+        .measured_each(names.into_iter().zip(errors), "Wb")
+        .judged(
+            undesirable,
+            "Sensor noise of 1e-9 m, alpha = 1, start at the true flux, 10 seeds: the rms flux error is \
              larger with d = 100 than with d = 1.",
-    ))
+        ))
 }
 
 fn sampling_rate(comparison: &Comparison) -> Claim {
@@ -117,15 +110,12 @@ fn sampling_rate(comparison: &Comparison) -> Claim {
     let grows = falls(&errors);
     let names =
         SAMPLE_TIMES.map(|time| format!("rms flux error, T = {} ms, noise {:e} m", 1e3 * time, NOISES[1]));
-    Claim::new(
-        "fast_sampling_is_ill_conditioned",
-        "Remark 4",
-        "For fast sampling rates the inversion may become ill-conditioned.",
-    )
-    .measured_each(names.into_iter().zip(errors), "Wb")
-    .judged(
-        grows,
-        "Same noise, exact model: the flux error grows from 10 to 1 to 0.1 ms, as the position \
+    Claim::new("fast_sampling_is_ill_conditioned", "Remark 4")
+        .stating("For fast sampling rates the inversion may become ill-conditioned.")
+        .measured_each(names.into_iter().zip(errors), "Wb")
+        .judged(
+            grows,
+            "Same noise, exact model: the flux error grows from 10 to 1 to 0.1 ms, as the position \
              differences that carry the flux shrink with T squared.",
-    )
+        )
 }

@@ -32,9 +32,9 @@ pub fn figures(comparison: &Comparison) -> Vec<FigureWithData> {
     let figure = FigureWithData::new("bearing_observers", title, data(comparison))
         .caption(
             "Root mean square errors of flux and velocity over the sensor's noise for three sample times, \
-             all observers on the same data, with the Cramer-Rao bound; and the share of runs in which \
-             the loop on estimates stays up. Without noise see the tables. Over few seeds an error may \
-             come out below the bound, which holds for the average over all.",
+             all observers on the same data, with the Cramer-Rao bound; and the share of runs in which the \
+             loop on estimates stays up. Without noise see the tables. Over few seeds an error may come out \
+             below the bound, which holds for the average over all.",
         )
         .panels(3, panels);
     vec![figure]
@@ -169,7 +169,7 @@ pub fn advice(comparison: &Comparison) -> Vec<String> {
         |(noise, row)| {
             format!(
                 "The three-sample Newton observer is for data without noise: at {} its flux error is {:.1e} \
-             Wb, more than a tenth of the signal.",
+                 Wb, more than a tenth of the signal.",
                 quantity(*noise, "m"),
                 row[newton].flux
             )
@@ -178,10 +178,10 @@ pub fn advice(comparison: &Comparison) -> Vec<String> {
     let kalman = index_of("Kalman, default noise");
     let worst = largest(scores.iter().map(|row| row[kalman].flux));
     vec![format!(
-        "Which observer at T = 1 ms, by the smallest flux error among those that keep every loop up: \
-             {}. {usable} The Kalman filter with its default noise never does worse than {worst:.1e} Wb \
-             and is the one to start with on a real sensor; tell it the sensor's noise, and a smaller \
-             flux noise the more the model is trusted.",
+        "Which observer at T = 1 ms, by the smallest flux error among those that keep every loop up: {}. \
+         {usable} The Kalman filter with its default noise never does worse than {worst:.1e} Wb and is the \
+         one to start with on a real sensor; tell it the sensor's noise, and a smaller flux noise the more \
+         the model is trusted.",
         choices.join("; ")
     )]
 }

@@ -90,9 +90,9 @@ pub fn estimates(start_up: &[Run; 2], moving: &[Run; 2], input_gain: f64) -> Fig
     let title = "Figure 5: position, velocity and extended state by LESO and NESO, printed parameters";
     FigureWithData::new("rig_figure_5", title, table)
         .caption(
-            "Above: the start from zero estimates at 8.5 mm in metres, which is all that Table 5 \
-             measures. Below: sine and step of the reference, observers in sensor volts from a steady \
-             start, shown in metres.",
+            "Above: the start from zero estimates at 8.5 mm in metres, which is all that Table 5 measures. \
+             Below: sine and step of the reference, observers in sensor volts from a steady start, shown in \
+             metres.",
         )
         .panels(3, panels)
 }
@@ -137,9 +137,8 @@ pub fn ranking(comparisons: &[Comparison]) -> FigureWithData {
     FigureWithData::new("rig_ranking", "Is LESO better than NESO? Above 1 it is", table)
         .caption(
             "Root mean square error of the position estimate with the printed parameters, NESO over LESO, \
-             10 s. From zero the start-up transient decides, alone and with opposite results in metres \
-             and in volts; from a steady start noise and the motion do. Runs without noise are in the \
-             table.",
+             10 s. From zero the start-up transient decides, alone and with opposite results in metres and \
+             in volts; from a steady start noise and the motion do. Runs without noise are in the table.",
         )
         .panels(2, panels)
 }
@@ -164,9 +163,9 @@ pub fn discretisations(runs: &[(&'static str, Run)]) -> FigureWithData {
     let title = "NESO at the paper's sample time: how it is solved decides whether it works";
     FigureWithData::new("rig_discretisation", title, table)
         .caption(
-            "The ball rests at 9 mm, observer in metres from zero. By forward Euler the printed \
-             parameters are unstable above 0.67 ms and end in a limit cycle; Runge-Kutta and the \
-             frozen-gain exact solution settle.",
+            "The ball rests at 9 mm, observer in metres from zero. By forward Euler the printed parameters \
+             are unstable above 0.67 ms and end in a limit cycle; Runge-Kutta and the frozen-gain exact \
+             solution settle.",
         )
         .panels(2, [whole, start])
 }

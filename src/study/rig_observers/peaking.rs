@@ -139,9 +139,9 @@ pub fn figure(lines: &[Line]) -> FigureWithData {
     plane = plane.dots("Pareto front", 6, best);
     FigureWithData::new("rig_peaking", "Noise against peaking", table)
         .caption(
-            "Observers in sensor volts. Left: what none other beats in both respects is dotted. NESO \
-             above 400 rad/s is more than one Runge-Kutta step per ms can solve. The peak arises from \
-             zero estimates alone; see the table of starts for how to do without.",
+            "Observers in sensor volts. Left: what none other beats in both respects is dotted. NESO above \
+             400 rad/s is more than one Runge-Kutta step per ms can solve. The peak arises from zero \
+             estimates alone; see the table of starts for how to do without.",
         )
         .panels(2, [plane, over])
 }
@@ -169,8 +169,7 @@ pub fn starts(packages: &LoopPackages) -> Result<Summary, StudyError> {
         rows.push(row);
     }
     Ok(Summary::new(
-        "Start of the estimates, ball at rest at 9 mm, observer in volts: largest |z2|, rms e1 over 2 \
-             s",
+        "Start of the estimates, ball at rest at 9 mm, observer in volts: largest |z2|, rms e1 over 2 s",
         [
             "observer",
             "zero, as in the paper",
