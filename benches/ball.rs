@@ -5,8 +5,10 @@
 mod measure;
 
 use maglev_fmu::signal::BallReference;
-use maglev_fmu::unit::{LevitatedBallController, LevitatedBallPlant, Silence, Unit};
-use maglev_fmu_test::component::{Component, reference};
+use maglev_fmu::unit::system::BALL;
+use maglev_fmu::unit::{ClosedLoop, ExchangeOrder, LevitatedBallController, LevitatedBallPlant};
+use maglev_fmu_test::component::Component;
+use maglev_fmu_test::values::{get, set};
 use measure::{Candidate, medians, verdict};
 
 const T: f64 = 1e-4;
@@ -21,23 +23,16 @@ struct Recording {
 }
 
 fn record() -> Recording {
-    let (mut plant, mut controller) = (LevitatedBallPlant::new(), LevitatedBallController::new());
+    let mut units = ClosedLoop::of(&BALL, ExchangeOrder::ControllerFirst);
+    units.start(0.0).expect("start values");
+    units.step_size = T;
     let mut recording = Recording::default();
-    plant.initialise(0.0).expect("start values");
-    controller.initialise(0.0).expect("start values");
-    let [current, wanted, voltage] =
-        ["current", "reference", "voltage"].map(|name| reference(&controller, name) as usize);
-    let [plant_current, plant_voltage] = ["current", "voltage"].map(|name| reference(&plant, name) as usize);
     for step in 0..STEPS {
-        let sensed = [plant.values()[plant_current], BallReference::Sinusoids.at(T * step as f64)];
-        controller.values_mut()[current] = sensed[0];
-        controller.values_mut()[wanted] = sensed[1];
-        controller.advance(T, &mut Silence).expect("a step");
-        let actuated = controller.values()[voltage];
-        plant.values_mut()[plant_voltage] = actuated;
-        plant.advance(T, &mut Silence).expect("a step");
+        let sensed = [get(&*units.plant, "current"), BallReference::Sinusoids.at(T * step as f64)];
+        set(&mut *units.controller, "reference", sensed[1]);
+        units.step().expect("a step");
         recording.sensed.push(sensed);
-        recording.actuated.push([actuated, 0.0]);
+        recording.actuated.push([get(&*units.controller, "voltage"), 0.0]);
     }
     recording
 }

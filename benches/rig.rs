@@ -10,8 +10,10 @@ use maglev_fmu::observer::extended_state::{
     ExtendedState, ExtendedStateModel, Injection, LinearInjection, NonlinearInjection, gains_from_bandwidth,
 };
 use maglev_fmu::observer::extended_state_exact::ExactPredictor;
-use maglev_fmu::unit::{MaglevRigController, MaglevRigPlant, Silence, Unit};
-use maglev_fmu_test::component::{Component, reference};
+use maglev_fmu::unit::system::RIG;
+use maglev_fmu::unit::{ClosedLoop, ExchangeOrder, MaglevRigController, MaglevRigPlant};
+use maglev_fmu_test::component::Component;
+use maglev_fmu_test::values::{get, set};
 use measure::{Candidate, medians, verdict};
 
 const T: f64 = 1e-3;
@@ -26,27 +28,18 @@ struct Recording {
 }
 
 fn record() -> Recording {
-    let (mut plant, mut controller) = (MaglevRigPlant::new(), MaglevRigController::new());
-    let index = |unit: &dyn Unit, name: &str| reference(unit, name) as usize;
-    let noise = index(&plant, "sensor.noise");
-    plant.values_mut()[noise] = 1e-3;
-    plant.initialise(0.0).expect("start values");
-    controller.initialise(0.0).expect("start values");
-    let (measured, input) = (index(&plant, "sensor_voltage_measured"), index(&plant, "voltage"));
-    let (sensor, wanted) = (index(&controller, "sensor_voltage"), index(&controller, "reference"));
-    let output = index(&controller, "voltage");
+    let mut units = ClosedLoop::of(&RIG, ExchangeOrder::ControllerFirst);
+    set(&mut *units.plant, "sensor.noise", 1e-3);
+    units.start(0.0).expect("start values");
+    units.step_size = T;
     let mut recording = Recording::default();
     for k in 0..STEPS {
-        let reading = plant.values()[measured];
+        let reading = get(&*units.plant, "sensor_voltage_measured");
         let target = -1.50868 + 0.15 * (core::f64::consts::PI * T * k as f64).sin();
-        controller.values_mut()[sensor] = reading;
-        controller.values_mut()[wanted] = target;
-        controller.advance(T, &mut Silence).expect("a step");
-        let voltage = controller.values()[output];
-        plant.values_mut()[input] = voltage;
-        plant.advance(T, &mut Silence).expect("a step");
+        set(&mut *units.controller, "reference", target);
+        units.step().expect("a step");
         recording.controller.push([reading, target]);
-        recording.plant.push([voltage, 0.0]);
+        recording.plant.push([get(&*units.controller, "voltage"), 0.0]);
     }
     recording
 }

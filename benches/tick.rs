@@ -13,11 +13,14 @@ use maglev_fmu::controller::bearing_feedback::{self, Gains, Law};
 use maglev_fmu::plant::magnetic_bearing::State;
 use maglev_fmu::signal::GaussianNoise;
 use maglev_fmu::unit::sample_clock::SampleClock;
+use maglev_fmu::unit::system::BEARING;
 use maglev_fmu::unit::{
-    Description, Journal, MagneticBearingController, MagneticBearingPlant, Silence, Unit, UnitError,
+    ClosedLoop, Description, ExchangeOrder, Journal, MagneticBearingController, MagneticBearingPlant, Unit,
+    UnitError,
 };
 use maglev_fmu_test::component::{Component, reference};
 use maglev_fmu_test::printed_newton;
+use maglev_fmu_test::values::get;
 use measure::{Candidate, medians, verdict};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -40,25 +43,17 @@ struct Recording {
 }
 
 fn record() -> Recording {
-    let (mut plant, mut controller) = (MagneticBearingPlant::new(), MagneticBearingController::new());
+    let mut units = ClosedLoop::of(&BEARING, ExchangeOrder::ControllerFirst);
+    units.start(0.0).expect("start values");
+    units.step_size = T;
     let mut noise = GaussianNoise::new(1, 0);
     let mut recording = Recording::default();
-    plant.initialise(0.0).expect("start values");
-    controller.initialise(0.0).expect("start values");
-    let plant_position = reference(&plant, "position") as usize;
-    let plant_voltage = reference(&plant, "voltage") as usize;
-    let controller_position = reference(&controller, "position") as usize;
-    let controller_voltage = reference(&controller, "voltage") as usize;
     for _ in 0..STEPS {
-        let position = plant.values()[plant_position];
-        controller.values_mut()[controller_position] = position;
-        controller.advance(T, &mut Silence).expect("a step");
-        let voltage = controller.values()[controller_voltage];
-        plant.values_mut()[plant_voltage] = voltage;
-        plant.advance(T, &mut Silence).expect("a step");
+        let position = get(&*units.plant, "position");
+        units.step().expect("a step");
         recording.positions.push([position]);
         recording.noisy_positions.push([position + NOISE * noise.sample()]);
-        recording.voltages.push([voltage]);
+        recording.voltages.push([get(&*units.controller, "voltage")]);
     }
     recording
 }

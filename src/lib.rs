@@ -2,7 +2,10 @@
 
 #[cfg(feature = "tools")]
 pub mod causes;
+#[cfg(feature = "tools")]
+pub mod chart;
 pub mod controller;
+mod exchange_order;
 #[cfg(feature = "tools")]
 mod file;
 pub mod fmi;

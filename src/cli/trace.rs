@@ -6,7 +6,7 @@ use std::error::Error;
 use clap::Args;
 use maglev_fmu::unit::system::{System, systems};
 use maglev_fmu::unit::variable::{Causality, Kind, Variable};
-use maglev_fmu::unit::{Silence, Unit};
+use maglev_fmu::unit::{ClosedLoop, ExchangeOrder, Unit};
 
 use super::output::Lines;
 
@@ -47,60 +47,49 @@ fn seconds(text: &str) -> Result<f64, String> {
 
 impl Trace {
     pub fn run(&self) -> Result<(), Box<dyn Error>> {
-        let (mut plant, mut controller) = ((self.system.plant.create)(), (self.system.controller.create)());
-        assign_all(&mut *plant, &self.plant)?;
-        assign_all(&mut *controller, &self.controller)?;
-        plant.start(0.0)?;
-        controller.start(0.0)?;
-        let step_size = self.step_size.unwrap_or_else(|| *value(&mut *controller, "sample_time"));
-        let (plant_outputs, controller_outputs) = (real_outputs(&*plant), real_outputs(&*controller));
+        let mut closed_loop = ClosedLoop::of(self.system, ExchangeOrder::ControllerFirst);
+        assign_all(&mut *closed_loop.plant, &self.plant)?;
+        assign_all(&mut *closed_loop.controller, &self.controller)?;
+        closed_loop.start(0.0)?;
+        closed_loop.step_size = self.step_size.unwrap_or_else(|| sample_time(&*closed_loop.controller));
+        let plant_outputs = real_outputs(&*closed_loop.plant);
+        let controller_outputs = real_outputs(&*closed_loop.controller);
         let mut lines = Lines::new()?;
         lines.say(format_args!(
             "{}",
             [header("plant", &plant_outputs), header("controller", &controller_outputs)].join(",")
         ))?;
         for _ in 0..self.steps {
-            let mut row = bits(&*plant, &plant_outputs);
-            pass_on(&mut *plant, &mut *controller, self.system.sensing);
-            controller.advance(step_size, &mut Silence)?;
-            row.extend(bits(&*controller, &controller_outputs));
-            pass_on(&mut *controller, &mut *plant, self.system.actuation);
-            plant.advance(step_size, &mut Silence)?;
+            let mut row = bits(&*closed_loop.plant, &plant_outputs);
+            closed_loop.step_controller()?;
+            row.extend(bits(&*closed_loop.controller, &controller_outputs));
+            closed_loop.step_plant()?;
             lines.say(format_args!("{}", row.join(",")))?;
         }
         Ok(lines.finish()?)
     }
 }
 
-/// Names of all real outputs, in the order of the table.
-fn real_outputs(unit: &dyn Unit) -> Vec<&'static str> {
+/// \[s\]
+fn sample_time(controller: &dyn Unit) -> f64 {
+    let (reference, _) = controller.description().find("sample_time").expect("a controller samples");
+    controller.values()[reference]
+}
+
+/// All real outputs with their value references, in the order of the table.
+fn real_outputs(unit: &dyn Unit) -> Vec<(usize, &'static str)> {
     let is_real_output =
-        |row: &&Variable| row.causality == Causality::Output && matches!(row.kind, Kind::Real(_));
-    unit.description().variables.iter().filter(is_real_output).map(|row| row.name).collect()
+        |row: &Variable| row.causality == Causality::Output && matches!(row.kind, Kind::Real(_));
+    let rows = unit.description().variables.iter().enumerate();
+    rows.filter(|(_, row)| is_real_output(row)).map(|(reference, row)| (reference, row.name)).collect()
 }
 
-fn header(unit: &str, names: &[&str]) -> String {
-    names.iter().map(|name| format!("{unit}.{name}")).collect::<Vec<_>>().join(",")
+fn header(unit: &str, outputs: &[(usize, &str)]) -> String {
+    outputs.iter().map(|(_, name)| format!("{unit}.{name}")).collect::<Vec<_>>().join(",")
 }
 
-fn bits(unit: &dyn Unit, names: &[&str]) -> Vec<String> {
-    let value = |name: &&str| {
-        let (reference, _) = unit.description().find(name).expect("a name from the table");
-        format!("{:016x}", unit.values()[reference].to_bits())
-    };
-    names.iter().map(value).collect()
-}
-
-fn pass_on(source: &mut dyn Unit, target: &mut dyn Unit, wires: &[(&str, &str)]) {
-    for (output, input) in wires {
-        *value(target, input) = *value(source, output);
-    }
-}
-
-/// The value of a variable that the unit's table has.
-fn value<'a>(unit: &'a mut dyn Unit, name: &str) -> &'a mut f64 {
-    let (reference, _) = unit.description().find(name).expect("a name from the table");
-    &mut unit.values_mut()[reference]
+fn bits(unit: &dyn Unit, outputs: &[(usize, &str)]) -> Vec<String> {
+    outputs.iter().map(|(reference, _)| format!("{:016x}", unit.values()[*reference].to_bits())).collect()
 }
 
 /// Carries out each `NAME=VALUE`; no name may be given twice.

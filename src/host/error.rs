@@ -128,6 +128,9 @@ pub enum HostError {
     /// A saved state can be used with the instance it came from only.
     #[error("the saved state was taken from another instance than `{instance}`")]
     ForeignState { instance: String },
+    /// Only what a wire carries can be offset on the way.
+    #[error("no wire leads to `{variable}` of `{unit}`", variable = printable(variable))]
+    NoWire { unit: String, variable: String },
     /// A master knows a `controller` and a `plant`, nothing else.
     #[error(
         "cannot record `{variable}` of `{unit}`: the units of the loop are `controller` and `plant`",

@@ -4,16 +4,7 @@ use super::error::{HostError, Result};
 use super::instance::Instance;
 use super::route::Route;
 use super::trace::{Probe, Trace};
-
-/// In which order values travel between the two units of a loop.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ExchangeOrder {
-    /// As on a rig with a fast processor: the plant is sampled, the controller computes, the plant moves on with the
-    /// new command.
-    ControllerFirst,
-    /// As most masters do: both step, then all values are exchanged. The command arrives one step late.
-    Parallel,
-}
+use crate::exchange_order::ExchangeOrder;
 
 /// A controller and a plant that step together at the communication points `start + k * step_size`.
 ///
@@ -101,6 +92,19 @@ impl TwoUnitLoop {
             self.units.push(instance.description().variable(variable)?.unit.as_deref().map(str::to_owned));
         }
         Ok(())
+    }
+
+    /// Lets the wire to this input of the plant add `offset`, in the variable's unit: a drive whose zero is off.
+    ///
+    /// # Errors
+    /// Those of [`Instance::variable`], and [`HostError::NoWire`] if none with reals leads there.
+    pub fn add_offset(&mut self, input: &str, offset: f64) -> Result<()> {
+        let target = self.plant.variable(input)?.value_reference();
+        if self.to_plant.add_offset(target, offset) {
+            Ok(())
+        } else {
+            Err(HostError::NoWire { unit: self.plant.name().to_owned(), variable: input.to_owned() })
+        }
     }
 
     /// Initialises both units at `start_time`, exchanges all values once, and fixes the step size (all in seconds).

@@ -41,6 +41,7 @@ mod trace;
 mod value;
 mod variable;
 
+pub use crate::exchange_order::ExchangeOrder;
 pub use crate::fmi::FmiVersion;
 pub use archive::Archive;
 pub use description::{CoSimulation, DefaultExperiment, EnumerationItem, ModelDescription};
@@ -49,7 +50,7 @@ pub use fmu::Fmu;
 pub use instance::{Instance, Logging};
 pub use journal::LogMessage;
 pub use limits::Limits;
-pub use master::{ExchangeOrder, TwoUnitLoop};
+pub use master::TwoUnitLoop;
 pub use saved_state::SavedState;
 pub use trace::Trace;
 pub use value::{Handle, Value};

@@ -10,6 +10,8 @@ pub(super) struct Route {
     sources: Vec<u32>,
     targets: Vec<u32>,
     values: Vec<f64>,
+    /// What is added on the way, with the place of the value.
+    offsets: Vec<(usize, f64)>,
     /// What the batch functions do not take: integers, booleans, enumerations, `Float32`.
     singles: Vec<Single>,
 }
@@ -45,11 +47,21 @@ impl Route {
         Ok(route)
     }
 
+    /// Adds `offset` to what the `Float64` input of this value reference gets; false if no wire leads there.
+    pub(super) fn add_offset(&mut self, target: u32, offset: f64) -> bool {
+        let place = self.targets.iter().position(|candidate| *candidate == target);
+        self.offsets.extend(place.map(|place| (place, offset)));
+        place.is_some()
+    }
+
     /// Reads the outputs of `source`.
     #[inline]
     pub(super) fn read(&mut self, source: &Instance) -> Result<()> {
         if !self.sources.is_empty() {
             source.get_reals(&self.sources, &mut self.values)?;
+            for &(place, offset) in &self.offsets {
+                self.values[place] += offset;
+            }
         }
         for single in &mut self.singles {
             single.value = source.get(single.source)?;

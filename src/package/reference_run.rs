@@ -9,7 +9,7 @@
 
 use crate::unit::system::{System, systems};
 use crate::unit::variable::{Causality, Kind, Variable};
-use crate::unit::{Description, Silence, StartValues, Unit, UnitError, UnitType, units};
+use crate::unit::{ClosedLoop, Description, ExchangeOrder, Silence, StartValues, Unit, UnitError, UnitType, units};
 
 /// Longest run \[s\]. The inputs of a reference run do not react to the plant, and levitation is unstable: what an
 /// importer rounds off its step size grows with e^(t / 20 ms) and worse.
@@ -110,58 +110,69 @@ fn named_values(unit: &dyn Unit) -> Vec<(&'static str, f64)> {
     names.zip(unit.values().iter().copied()).collect()
 }
 
-/// The unit that is looked at and, if it has a loop, the other one.
+/// The unit that is looked at, in its loop if it has one.
 struct Bench {
-    units: Vec<Box<dyn Unit>>,
-    system: Option<&'static System>,
-    /// Which of the units is looked at.
-    place: usize,
+    stage: Stage,
     free: Vec<usize>,
     /// Inputs from which outputs at the start follow.
     initial: Vec<usize>,
     has_started: bool,
 }
 
-/// Places in a bench with a loop, in the order of stepping.
-const CONTROLLER: usize = 0;
-const PLANT: usize = 1;
+enum Stage {
+    Alone(Box<dyn Unit>),
+    Plant(ClosedLoop),
+    Controller(ClosedLoop),
+}
 
 impl Bench {
     fn new(description: &'static Description, start_values: &StartValues) -> Result<Self, UnitError> {
         let is_it = |unit: &UnitType| std::ptr::eq(unit.description, description);
         let system = systems().find(|system| is_it(system.plant) || is_it(system.controller));
-        let (types, place) = match system {
+        let mut stage = match system {
             Some(system) => {
-                (vec![system.controller, system.plant], if is_it(system.plant) { PLANT } else { CONTROLLER })
+                let mut closed_loop = ClosedLoop::of(system, ExchangeOrder::ControllerFirst);
+                closed_loop.step_size = description.step_size;
+                apply_starts_of_partner(system, description, start_values, &mut closed_loop);
+                if is_it(system.plant) { Stage::Plant(closed_loop) } else { Stage::Controller(closed_loop) }
             }
-            None => (units().filter(|unit| is_it(unit)).collect(), 0),
+            None => {
+                let unit = units().find(|unit| is_it(unit)).expect("a unit of the list");
+                Stage::Alone((unit.create)())
+            }
         };
-        let mut units: Vec<Box<dyn Unit>> = types.iter().map(|unit| (unit.create)()).collect();
-        if let Some(system) = system {
-            apply_starts_of_partner(system, description, start_values, &types, &mut units);
+        start_values.apply(stage.unit_mut());
+        match &mut stage {
+            Stage::Alone(unit) => unit.start(0.0)?,
+            Stage::Plant(closed_loop) | Stage::Controller(closed_loop) => closed_loop.start(0.0)?,
         }
-        start_values.apply(&mut *units[place]);
-        units.iter_mut().try_for_each(|unit| unit.start(0.0))?;
-        let wires =
-            system.map_or(&[][..], |system| if place == PLANT { system.actuation } else { system.sensing });
+        let wired: Vec<&str> = system
+            .into_iter()
+            .flat_map(System::wires)
+            .filter(|wire| std::ptr::eq(wire.target, description))
+            .map(|wire| wire.input)
+            .collect();
         let is_free = |variable: &Variable| {
             variable.causality == Causality::Input
                 && matches!(variable.kind, Kind::Real(_))
-                && !wires.iter().any(|(_, input)| *input == variable.name)
+                && !wired.contains(&variable.name)
         };
         let rows = description.variables.iter().enumerate();
         let free = rows.filter(|(_, variable)| is_free(variable)).map(|(reference, _)| reference).collect();
-        let initial = initial_inputs(description);
-        Ok(Self { units, system, place, free, initial, has_started: false })
+        Ok(Self { stage, free, initial: initial_inputs(description), has_started: false })
     }
 
     fn unit(&self) -> &dyn Unit {
-        &*self.units[self.place]
+        match &self.stage {
+            Stage::Alone(unit) => &**unit,
+            Stage::Plant(closed_loop) => &*closed_loop.plant,
+            Stage::Controller(closed_loop) => &*closed_loop.controller,
+        }
     }
 
     /// Moves the free inputs by a twentieth of their nominal values, as far as their range allows.
     fn disturb(&mut self) {
-        let unit = &mut self.units[self.place];
+        let unit = self.stage.unit_mut();
         for &reference in &self.free {
             let variable = &unit.description().variables[reference];
             if let Kind::Real(quantity) = variable.kind {
@@ -175,31 +186,38 @@ impl Bench {
 
     /// Steps the loop; returns what the unit's variables were when its own step began.
     fn advance(&mut self, step_size: f64) -> Result<Vec<(&'static str, f64)>, UnitError> {
-        let mut seen = Vec::new();
-        for place in 0..self.units.len() {
-            if let Some(system) = self.system {
-                let (source, wires) = match place {
-                    CONTROLLER => (PLANT, system.sensing),
-                    _ => (CONTROLLER, system.actuation),
-                };
-                for (output, input) in wires {
-                    let value = self.units[source].values()[reference(&*self.units[source], output)];
-                    let target = &mut self.units[place];
-                    let reference = reference(&**target, input);
-                    let keeps_start =
-                        !self.has_started && place == self.place && self.initial.contains(&reference);
-                    if !keeps_start {
-                        target.values_mut()[reference] = value;
-                    }
-                }
+        if let Stage::Plant(closed_loop) = &mut self.stage {
+            closed_loop.step_controller()?;
+        }
+        let starts: Vec<f64> =
+            self.initial.iter().map(|reference| self.unit().values()[*reference]).collect();
+        match &mut self.stage {
+            Stage::Alone(_) => (),
+            Stage::Plant(closed_loop) => closed_loop.actuate(),
+            Stage::Controller(closed_loop) => closed_loop.sense(),
+        }
+        if !self.has_started {
+            for (reference, start) in self.initial.iter().zip(starts) {
+                self.stage.unit_mut().values_mut()[*reference] = start;
             }
-            if place == self.place {
-                seen = named_values(self.unit());
-            }
-            self.units[place].advance(step_size, &mut Silence)?;
         }
         self.has_started = true;
+        let seen = named_values(self.unit());
+        self.stage.unit_mut().advance(step_size, &mut Silence)?;
+        if let Stage::Controller(closed_loop) = &mut self.stage {
+            closed_loop.step_plant()?;
+        }
         Ok(seen)
+    }
+}
+
+impl Stage {
+    fn unit_mut(&mut self) -> &mut dyn Unit {
+        match self {
+            Self::Alone(unit) => &mut **unit,
+            Self::Plant(closed_loop) => &mut *closed_loop.plant,
+            Self::Controller(closed_loop) => &mut *closed_loop.controller,
+        }
     }
 }
 
@@ -220,21 +238,15 @@ fn apply_starts_of_partner(
     system: &System,
     description: &'static Description,
     start_values: &StartValues,
-    types: &[&UnitType],
-    units: &mut [Box<dyn Unit>],
+    closed_loop: &mut ClosedLoop,
 ) {
     let own = system.start_values(description);
     if own.is_ok_and(|own| own != *StartValues::TABLE && start_values.include(&own)) {
-        for (unit, made) in types.iter().zip(units) {
+        for unit in [&mut closed_loop.plant, &mut closed_loop.controller] {
             // What cannot be packaged has been refused before.
-            system.start_values(unit.description).unwrap_or_default().apply(&mut **made);
+            system.start_values(unit.description()).unwrap_or_default().apply(&mut **unit);
         }
     }
-}
-
-/// Value reference of an end of a wire.
-fn reference(unit: &dyn Unit, name: &str) -> usize {
-    unit.description().find(name).expect("wires end at variables of the table").0
 }
 
 #[cfg(test)]

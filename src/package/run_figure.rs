@@ -4,6 +4,7 @@
 use quick_xml::escape::escape;
 
 use super::reference_run::{ReferenceRun, Table};
+use crate::chart::thin;
 use crate::unit::variable::{Kind, Variable};
 
 /// Lengths in the picture \[pixel\].
@@ -43,12 +44,12 @@ fn panels(table: &Table, class: &'static str) -> impl Iterator<Item = String> {
         move |(column, variable)| {
             let points: Vec<(f64, f64)> =
                 table.rows.iter().map(|(time, values)| (*time, values[column])).collect();
-            panel(variable, &points, class)
+            panel(variable, points, class)
         },
     )
 }
 
-fn panel(variable: &Variable, points: &[(f64, f64)], class: &str) -> String {
+fn panel(variable: &Variable, points: Vec<(f64, f64)>, class: &str) -> String {
     let bounds = |pick: fn(&(f64, f64)) -> f64| {
         let numbers = points.iter().map(pick);
         numbers.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), number| {
@@ -58,7 +59,7 @@ fn panel(variable: &Variable, points: &[(f64, f64)], class: &str) -> String {
     let ((start, end), (low, high)) = (bounds(|point| point.0), bounds(|point| point.1));
     // A line that stands still runs through the middle.
     let (bottom, span) = if high > low { (low, high - low) } else { (low - 0.5, 1.0) };
-    let line: Vec<String> = thinned(points)
+    let line: Vec<String> = thin(points, POINTS)
         .iter()
         .map(|(time, value)| {
             let x = WIDTH * (time - start) / (end - start);
@@ -74,23 +75,6 @@ fn panel(variable: &Variable, points: &[(f64, f64)], class: &str) -> String {
         escape(title.as_str()),
         line.join(" ")
     )
-}
-
-/// Smallest and largest value of each of some stretches, so that no peak is lost.
-fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
-    let length = (2 * points.len()).div_ceil(POINTS).max(1);
-    if length <= 2 {
-        return points.to_vec();
-    }
-    let mut kept = Vec::new();
-    for stretch in points.chunks(length) {
-        let by_value = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
-        let ends = [stretch.iter().min_by(by_value), stretch.iter().max_by(by_value)];
-        let mut ends: Vec<(f64, f64)> = ends.into_iter().flatten().copied().collect();
-        ends.sort_by(|a, b| a.0.total_cmp(&b.0));
-        kept.extend(ends);
-    }
-    kept
 }
 
 #[cfg(test)]
@@ -114,13 +98,5 @@ mod tests {
             assert_eq!(text.matches("<polyline").count(), count);
             assert!(!text.contains("NaN") && !text.contains("inf"), "{}", unit.description.name);
         }
-    }
-
-    #[test]
-    fn thinning_keeps_the_peaks() {
-        let points: Vec<(f64, f64)> =
-            (0..10_000).map(|k| (f64::from(k), if k == 7_321 { 5.0 } else { 0.0 })).collect();
-        let kept = thinned(&points);
-        assert!(kept.len() <= POINTS + 2 && kept.contains(&(7_321.0, 5.0)));
     }
 }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
+use crate::chart::ChartError;
 use crate::host::HostError;
 
 /// Failure of an experiment or of writing its results.
@@ -13,8 +14,8 @@ pub enum StudyError {
     Host(#[from] HostError),
     #[error("cannot write {}", path.display())]
     Write { path: PathBuf, source: std::io::Error },
-    #[error("cannot draw {figure}: {reason}")]
-    Draw { figure: String, reason: String },
+    #[error(transparent)]
+    Chart(#[from] ChartError),
     #[error("the search failed: {reason}")]
     Search { reason: String },
     #[error("cannot turn a table into CSV")]

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use super::StudyError;
+use super::run::Run;
 use crate::fmi::FmiVersion;
-use crate::host::{ExchangeOrder, Fmu, HostError, Instance, Logging, Trace, TwoUnitLoop, Value};
+use crate::host::{ExchangeOrder, Fmu, HostError, Instance, Logging, TwoUnitLoop, Value};
 use crate::unit::{System, UnitType};
 
 /// Variable and value.
@@ -37,6 +38,19 @@ impl LoopPackages {
         with_parameters(&self.controller, "controller", parameters)
     }
 
+    /// Both with parameters, wired, the controller to go first and to tick every `sample_time` \[s\]; to be initialised.
+    pub fn connect(
+        &self,
+        plant: &[Parameter<'_>],
+        controller: &[Parameter<'_>],
+        sample_time: f64,
+    ) -> Result<TwoUnitLoop, HostError> {
+        let (plant, mut controller) = (self.plant(plant)?, self.controller(controller)?);
+        controller.set_by_name("sample_time", sample_time)?;
+        let System { sensing, actuation, .. } = self.system;
+        TwoUnitLoop::connect(controller, plant, ExchangeOrder::ControllerFirst, sensing, actuation)
+    }
+
     /// Runs the loop, controller first, for `duration` \[s\] with a tick every `sample_time` \[s\]; the last row is at the
     /// end.
     pub fn simulate(
@@ -46,7 +60,7 @@ impl LoopPackages {
         record: &[(&str, &str)],
         sample_time: f64,
         duration: f64,
-    ) -> Result<Trace, StudyError> {
+    ) -> Result<Run, StudyError> {
         self.simulate_with(plant, controller, record, sample_time, duration, |_, _, _| Ok(()))
     }
 
@@ -60,18 +74,13 @@ impl LoopPackages {
         sample_time: f64,
         duration: f64,
         stimulus: impl FnMut(f64, &mut Instance, &mut Instance) -> Result<(), HostError>,
-    ) -> Result<Trace, StudyError> {
-        let plant = self.plant(plant)?;
-        let mut controller = self.controller(controller)?;
-        controller.set_by_name("sample_time", sample_time)?;
-        let System { sensing, actuation, .. } = self.system;
-        let mut control_loop =
-            TwoUnitLoop::connect(controller, plant, ExchangeOrder::ControllerFirst, sensing, actuation)?;
+    ) -> Result<Run, StudyError> {
+        let mut control_loop = self.connect(plant, controller, sample_time)?;
         control_loop.record(record)?;
         // The last row, at the end, belongs to a step that begins there.
         let steps = (duration / sample_time).round() as usize + 1;
         control_loop.initialise(0.0, Some(steps as f64 * sample_time), sample_time)?;
-        Ok(control_loop.run_with(steps, stimulus)?)
+        Ok(control_loop.run_with(steps, stimulus)?.into())
     }
 }
 

@@ -7,58 +7,23 @@ pub mod ball;
 pub mod ball_monte_carlo;
 pub mod bearing;
 pub mod bearing_observers;
-pub mod chart;
 pub mod claim;
 mod error;
+mod findings;
 mod loop_packages;
+mod metrics;
 pub mod output;
 pub mod report;
 pub mod rig;
 mod rig_observers;
+mod run;
+mod sweep;
 pub mod tuning;
 
 use std::path::Path;
 
 pub use error::StudyError;
-
-use chart::Figure;
-use claim::Claim;
-
-/// What an experiment yields.
-pub struct Findings {
-    /// Short name, as on the command line.
-    pub name: &'static str,
-    pub title: &'static str,
-    /// The source, and what about it is printed, reconstructed or assumed.
-    pub provenance: &'static [&'static str],
-    pub figures: Vec<FigureWithData>,
-    pub claims: Vec<Claim>,
-    pub summaries: Vec<Summary>,
-    /// Paragraphs that tell a user what follows, written from the numbers.
-    pub advice: Vec<String>,
-}
-
-/// A table for people: cells are formatted with their units.
-pub struct Summary {
-    pub title: String,
-    pub headers: Vec<String>,
-    pub rows: Vec<Vec<String>>,
-}
-
-/// A figure and the numbers behind it.
-pub struct FigureWithData {
-    /// File name without extension.
-    pub name: String,
-    pub figure: Figure,
-    pub table: Table,
-}
-
-/// Columns of equal length with a header each, `name [unit]`.
-#[derive(Default)]
-pub struct Table {
-    pub headers: Vec<String>,
-    pub columns: Vec<Vec<f64>>,
-}
+pub use findings::{FigureWithData, Findings, Summary, Table};
 
 /// Called with the share of work done and what is being done.
 pub type Progress<'a> = &'a (dyn Fn(f64, &str) + Sync);

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::claim::Claim;
-use super::{FigureWithData, Findings, StudyError, Table, chart, report};
-use crate::file;
+use super::{FigureWithData, Findings, StudyError, Table, report};
+use crate::{chart, file};
 
 /// The claims of one experiment in `claims.json`.
 #[derive(Serialize)]

@@ -2,6 +2,7 @@
 //! Knows nothing of FMI.
 
 pub mod choice;
+mod closed_loop;
 pub mod continuous;
 pub mod continuous_plant;
 pub mod controller_choices;
@@ -41,6 +42,8 @@ pub mod work;
 
 use core::fmt;
 
+pub use crate::exchange_order::ExchangeOrder;
+pub use closed_loop::ClosedLoop;
 pub use continuous::{ContinuousRows, ContinuousUnit, Solver};
 pub use description::Description;
 pub use edition::Edition;

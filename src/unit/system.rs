@@ -37,6 +37,16 @@ pub struct Wire {
     pub input: &'static str,
 }
 
+impl Wire {
+    /// Value references of the output and of the input.
+    pub fn references(&self) -> (usize, usize) {
+        let reference = |unit: &Description, name: &str| {
+            unit.find(name).expect("wires end at variables of the tables, which a test checks").0
+        };
+        (reference(self.source, self.output), reference(self.target, self.input))
+    }
+}
+
 /// A start value in a package of a system.
 #[derive(Clone, Copy, Debug)]
 pub enum Start {

@@ -5,9 +5,10 @@ use std::cell::Cell;
 use std::fmt::{self, Write};
 
 use maglev_fmu::signal::BallReference;
-use maglev_fmu::unit::{Journal, Silence, Topic, Unit};
-use maglev_fmu_test::bearing_loop::{BearingLoop, OBSERVERS};
-use maglev_fmu_test::rig_loop::RigLoop;
+use maglev_fmu::unit::system::{BEARING, RIG};
+use maglev_fmu::unit::{Journal, Silence, Topic};
+use maglev_fmu_test::bearing::OBSERVERS;
+use maglev_fmu_test::closed_loop::closed_loop;
 use maglev_fmu_test::values::{get, set};
 
 use crate::ball::native_loop as ball;
@@ -72,20 +73,20 @@ fn steps_allocate_nothing() {
         for law in 1..=4 {
             let controller = [parameters, &[("controller.law", f64::from(law))]].concat();
             let mut run =
-                BearingLoop::new(&[("sensor.noise", 1e-7), ("process.flux_noise", 1e-6)], &controller);
+                closed_loop(&BEARING, &[("sensor.noise", 1e-7), ("process.flux_noise", 1e-6)], &controller);
             let before = ALLOCATIONS.get();
             for tick in 0..200 {
                 for input in ["position_measured", "voltage_measured"] {
-                    let value = get(&run.plant, input);
+                    let value = get(&*run.plant, input);
                     let input = if input == "position_measured" { "position" } else { "voltage_applied" };
-                    set(&mut run.controller, input, value);
+                    set(&mut *run.controller, input, value);
                 }
                 if tick == 100 {
                     run.controller.adopt_parameters();
                 }
                 run.controller.advance(1e-3, &mut listener).unwrap();
-                let voltage = get(&run.controller, "voltage");
-                set(&mut run.plant, "voltage", voltage);
+                let voltage = get(&*run.controller, "voltage");
+                set(&mut *run.plant, "voltage", voltage);
                 run.plant.advance(1e-3, &mut Silence).unwrap();
             }
             assert_eq!(ALLOCATIONS.get(), before, "{name}, law {law}");
@@ -110,9 +111,9 @@ fn ball_steps_allocate_nothing(kind: f64, listener: &mut Listener) {
         }
         run.step();
     }
-    set(&mut run.controller, "voltage_applied", 1e300);
+    set(&mut *run.controller, "voltage_applied", 1e300);
     run.controller.advance(1e-4, listener).unwrap();
-    set(&mut run.plant, "voltage", 0.0);
+    set(&mut *run.plant, "voltage", 0.0);
     run.plant.advance(1.0, listener).unwrap();
     assert_eq!(ALLOCATIONS.get(), before, "observer.kind {kind}");
     assert!(listener.0 > 0, "the observer started again and the ball fell");
@@ -130,22 +131,22 @@ fn rig_steps_allocate_nothing(listener: &mut Listener) {
         ];
         let mut controller = parameters.map(|(name, item)| (name, f64::from(item + 1))).to_vec();
         controller.extend([("observer.bandwidth", 3000.0), ("observer.exponent[2]", 0.7)]);
-        let mut run = RigLoop::new(&[("sensor.noise", 1e-3)], &controller);
+        let mut run = closed_loop(&RIG, &[("sensor.noise", 1e-3)], &controller);
         let before = (ALLOCATIONS.get(), listener.0);
         for tick in 0..200 {
             for (from, to) in
                 [("sensor_voltage_measured", "sensor_voltage"), ("voltage_measured", "voltage_applied")]
             {
-                let value = get(&run.plant, from);
-                set(&mut run.controller, to, value);
+                let value = get(&*run.plant, from);
+                set(&mut *run.controller, to, value);
             }
             if tick == 100 {
                 run.controller.adopt_parameters();
             }
             run.controller.advance(1e-3, listener).unwrap();
-            let voltage = get(&run.controller, "voltage");
-            set(&mut run.plant, "voltage", voltage);
-            set(&mut run.plant, "force", 5.0 * f64::from(u8::from(tick > 50)));
+            let voltage = get(&*run.controller, "voltage");
+            set(&mut *run.plant, "voltage", voltage);
+            set(&mut *run.plant, "force", 5.0 * f64::from(u8::from(tick > 50)));
             run.plant.advance(1e-3, listener).unwrap();
         }
         assert_eq!(ALLOCATIONS.get(), before.0, "{controller:?}");

@@ -2,30 +2,29 @@
 //! exchange, and wires carry zeros in the first step. Not the bits are looked at but the physics.
 
 use maglev_fmu::unit::system::{BALL, BEARING, RIG, System};
-use maglev_fmu::unit::{Silence, Unit, UnitError, UnitType};
+use maglev_fmu::unit::{ClosedLoop, ExchangeOrder, UnitError, UnitType};
+use maglev_fmu_test::closed_loop::closed_loop;
 use maglev_fmu_test::values::{get, set};
 
-/// A unit as a package of a system starts it.
-fn started(system: &System, unit: &UnitType) -> Box<dyn Unit> {
-    let mut made = (unit.create)();
-    system.start_values(unit.description).unwrap().apply(&mut *made);
-    made.initialise(0.0).unwrap();
-    made
+/// The units as a package of a system starts them. Wires carry zeros before the first exchange.
+fn started(system: &System, step_size: f64) -> ClosedLoop {
+    let mut units = ClosedLoop::of(system, ExchangeOrder::Parallel);
+    units.step_size = step_size;
+    for unit in [&mut units.plant, &mut units.controller] {
+        system.start_values(unit.description()).unwrap().apply(&mut **unit);
+        unit.initialise(0.0).unwrap();
+    }
+    for wire in system.wires() {
+        let is_of_plant = std::ptr::eq(wire.target, system.plant.description);
+        let unit = if is_of_plant { &mut units.plant } else { &mut units.controller };
+        set(&mut **unit, wire.input, 0.0);
+    }
+    units
 }
 
 /// As in the unit's table.
-fn plain(unit: &UnitType) -> Box<dyn Unit> {
-    let mut made = (unit.create)();
-    made.initialise(0.0).unwrap();
-    made
-}
-
-type Wire = (&'static str, &'static str);
-
-fn pass(from: &dyn Unit, to: &mut dyn Unit, wires: &[Wire]) {
-    for (output, input) in wires {
-        set(to, input, get(from, output));
-    }
+fn start_value(unit: &UnitType, name: &str) -> f64 {
+    unit.description.find(name).unwrap().1.start
 }
 
 /// Outputs `plant.*` and `controller.*` after each step.
@@ -37,18 +36,12 @@ struct Run {
 impl Run {
     /// Of the package, for `duration` \[s\] in steps of `step_size` \[s\]. Wires are zero before the first exchange.
     fn of(system: &System, step_size: f64, duration: f64, plotted: [&[&str]; 2]) -> Result<Self, UnitError> {
-        let mut plant = started(system, system.plant);
-        let mut controller = started(system, system.controller);
-        system.actuation.iter().for_each(|(_, input)| set(&mut *plant, input, 0.0));
-        system.sensing.iter().for_each(|(_, input)| set(&mut *controller, input, 0.0));
+        let mut units = started(system, step_size);
         let mut run = Self { plant: Vec::new(), controller: Vec::new() };
         for _ in 0..(duration / step_size).round() as usize {
-            plant.advance(step_size, &mut Silence)?;
-            controller.advance(step_size, &mut Silence)?;
-            pass(&*plant, &mut *controller, system.sensing);
-            pass(&*controller, &mut *plant, system.actuation);
-            run.plant.push(plotted[0].iter().map(|name| get(&*plant, name)).collect());
-            run.controller.push(plotted[1].iter().map(|name| get(&*controller, name)).collect());
+            units.step()?;
+            run.plant.push(plotted[0].iter().map(|name| get(&*units.plant, name)).collect());
+            run.controller.push(plotted[1].iter().map(|name| get(&*units.controller, name)).collect());
         }
         Ok(run)
     }
@@ -72,14 +65,11 @@ fn largest(values: &[f64]) -> f64 {
 /// Position of the bearing after `duration` \[s\] in the loop of the paper: the controller reads and ticks, then the
 /// plant moves on with the new voltage.
 fn bearing_of_the_paper(duration: f64) -> f64 {
-    let (mut plant, mut controller) = (plain(BEARING.plant), plain(BEARING.controller));
-    for _ in 0..(duration / BEARING.step_size()).round() as usize {
-        pass(&*plant, &mut *controller, BEARING.sensing);
-        controller.advance(BEARING.step_size(), &mut Silence).unwrap();
-        pass(&*controller, &mut *plant, BEARING.actuation);
-        plant.advance(BEARING.step_size(), &mut Silence).unwrap();
+    let mut units = closed_loop(&BEARING, &[], &[]);
+    for _ in 0..(duration / units.step_size).round() as usize {
+        units.step().unwrap();
     }
-    get(&*plant, "position")
+    get(&*units.plant, "position")
 }
 
 /// Samples that an observer needs.
@@ -125,7 +115,7 @@ fn the_ball_is_up() {
         assert!(end[0].abs() < 1e-5, "{end:?} in steps of {step_size} s");
         // The estimator waits out its start-up, then needs some tens of milliseconds.
         let settled = (0.3 / step_size) as usize;
-        let gap = get(&*plain(BALL.plant), "gap");
+        let gap = start_value(BALL.plant, "gap");
         let flux = largest(&Run::column(&run.plant, 1));
         assert!(run.worst_error(0, settled) < 0.01 * gap);
         assert!(run.worst_error(1, settled) < 0.01 * flux);
@@ -134,7 +124,7 @@ fn the_ball_is_up() {
 
 #[test]
 fn the_ball_of_the_rig_stays_where_it_is() {
-    let start = get(&*plain(RIG.plant), "initial.position");
+    let start = start_value(RIG.plant, "initial.position");
     for step_size in [1e-4, 3e-4, 4e-4, 5e-4, 7e-4, 8e-4, RIG.step_size()] {
         let plotted: [&[&str]; 2] = [&["position", "sensor_voltage"], &["estimate.si.position"]];
         let run = Run::of(&RIG, step_size, 2.0, plotted).unwrap();
@@ -145,7 +135,7 @@ fn the_ball_of_the_rig_stays_where_it_is() {
         // A wire at zero means the operating point.
         assert!(run.plant.last().unwrap()[1].abs() < 1e-3);
     }
-    assert!(get(&*started(&RIG, RIG.plant), "sensor_voltage").abs() < 1e-12);
+    assert!(get(&*started(&RIG, RIG.step_size()).plant, "sensor_voltage").abs() < 1e-12);
 }
 
 #[test]

@@ -2,7 +2,8 @@
 
 use maglev_fmu::host::{ExchangeOrder, TwoUnitLoop};
 use maglev_fmu::package::FmiVersion::{self, Three, Two};
-use maglev_fmu_test::bearing_loop::BearingLoop;
+use maglev_fmu::unit::system::BEARING;
+use maglev_fmu_test::closed_loop::closed_loop;
 use maglev_fmu_test::packages;
 use maglev_fmu_test::values::get;
 
@@ -63,17 +64,16 @@ const NOISY: Scenario = Scenario {
 type Columns = Vec<Vec<u64>>;
 
 fn natively(scenario: &Scenario) -> Columns {
-    let mut bearing = BearingLoop::new(scenario.plant, scenario.controller);
-    bearing.step_size = STEP_SIZE;
+    let mut bearing = closed_loop(&BEARING, scenario.plant, scenario.controller);
     let mut columns = vec![Vec::new(); RECORD.len()];
     for _ in 0..STEPS {
-        bearing.step_controller();
+        bearing.step_controller().unwrap();
         for ((unit, name), column) in RECORD.iter().zip(&mut columns) {
             let value =
-                if *unit == "plant" { get(&bearing.plant, name) } else { get(&bearing.controller, name) };
+                if *unit == "plant" { get(&*bearing.plant, name) } else { get(&*bearing.controller, name) };
             column.push(value.to_bits());
         }
-        bearing.step_plant();
+        bearing.step_plant().unwrap();
     }
     columns
 }

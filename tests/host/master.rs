@@ -44,6 +44,16 @@ fn the_controller_acts_at_once_or_one_step_late() {
 }
 
 #[test]
+fn a_wire_may_add_an_offset() {
+    let mut biased = control_loop(ExchangeOrder::ControllerFirst);
+    biased.add_offset("u", 0.25).unwrap();
+    biased.initialise(0.0, None, 0.1).unwrap();
+    assert_eq!(biased.run(3).unwrap().column("plant.y").unwrap(), [1.0, 0.75, 0.625]);
+    let unwired = biased.add_offset("y", 1.0).unwrap_err();
+    assert_eq!(unwired.to_string(), "no wire leads to `y` of `plant`");
+}
+
+#[test]
 fn a_run_goes_on_where_the_last_one_ended() {
     for order in [ExchangeOrder::ControllerFirst, ExchangeOrder::Parallel] {
         let mut whole = control_loop(order);

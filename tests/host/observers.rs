@@ -8,7 +8,7 @@ use maglev_fmu::observer::windowed_newton::{WindowedNewtonObserver, WindowedNewt
 use maglev_fmu::package::Form;
 use maglev_fmu::plant::magnetic_bearing::{MagneticBearing, Map};
 use maglev_fmu::unit::{MagneticBearingController, Silence, Unit};
-use maglev_fmu_test::bearing_loop::{APPLIED, KALMAN, OBSERVERS};
+use maglev_fmu_test::bearing::{APPLIED, KALMAN, OBSERVERS};
 use maglev_fmu_test::packages;
 use maglev_fmu_test::sampled_bearing::{Experiment, OBSERVER_START, T, law_a, state_feedback};
 use maglev_fmu_test::values::{get, set};

@@ -2,9 +2,11 @@
 
 use maglev_fmu::host::{ExchangeOrder, TwoUnitLoop};
 use maglev_fmu::package::FmiVersion::{self, Three, Two};
-use maglev_fmu::unit::system;
+use maglev_fmu::unit::Silence;
+use maglev_fmu::unit::system::RIG;
+use maglev_fmu_test::closed_loop::closed_loop;
 use maglev_fmu_test::packages;
-use maglev_fmu_test::rig_loop::{APPLIED, CURRENT, METRES, NONLINEAR, RigLoop, THROUGH_EXTENDED_STATE};
+use maglev_fmu_test::rig::{APPLIED, CURRENT, METRES, NONLINEAR, THROUGH_EXTENDED_STATE};
 use maglev_fmu_test::values::get;
 
 /// T \[s\]
@@ -31,16 +33,17 @@ const RECORD: [(&str, &str); 12] = [
 type Columns = Vec<Vec<u64>>;
 
 fn natively(plant: &[(&str, f64)], controller: &[(&str, f64)]) -> Columns {
-    let mut rig = RigLoop::new(plant, controller);
+    let mut rig = closed_loop(&RIG, plant, controller);
     let mut columns = vec![Vec::new(); RECORD.len()];
     for _ in 0..STEPS {
-        rig.step_controller();
-        rig.hand_over();
+        rig.step_controller().unwrap();
+        rig.actuate();
+        rig.plant.continuous().expect("a plant").evaluate();
         for ((unit, name), column) in RECORD.iter().zip(&mut columns) {
-            let value = if *unit == "plant" { get(&rig.plant, name) } else { get(&rig.controller, name) };
+            let value = if *unit == "plant" { get(&*rig.plant, name) } else { get(&*rig.controller, name) };
             column.push(value.to_bits());
         }
-        rig.plant_advance();
+        rig.plant.advance(T, &mut Silence).unwrap();
     }
     columns
 }
@@ -53,8 +56,8 @@ fn through_fmus(
         packages::instantiate(controller, "MaglevRigController", controller_values),
         packages::instantiate(plant, "MaglevRigPlant", plant_values),
         ExchangeOrder::ControllerFirst,
-        system::RIG.sensing,
-        system::RIG.actuation,
+        RIG.sensing,
+        RIG.actuation,
     )
     .unwrap();
     rig.record(&RECORD).unwrap();

@@ -8,7 +8,8 @@ use maglev_fmu::study::tuning::settings::SwarmSettings;
 use maglev_fmu::study::tuning::{Objective, Tuned, tune};
 use maglev_fmu::unit::system::RIG;
 use maglev_fmu::unit::variable::Kind;
-use maglev_fmu::unit::{Silence, Unit};
+use maglev_fmu::unit::{ClosedLoop, ExchangeOrder, Unit};
+use maglev_fmu_test::values::{get, set};
 
 fn search(observer: ObserverKind, objective: &Objective, settings: SwarmSettings, seed: u64) -> Tuned {
     tune(observer, objective, &SwarmSettings { seed, ..settings }, |_| ()).unwrap()
@@ -65,8 +66,8 @@ fn printed_swarm_diverges() {
     }
 }
 
-/// A unit with parameters, as an importer would set them.
-fn with(mut unit: Box<dyn Unit>, parameters: &[(&str, Value<'_>)]) -> Box<dyn Unit> {
+/// Sets parameters as an importer would.
+fn set_all(unit: &mut dyn Unit, parameters: &[(&str, Value<'_>)]) {
     for (name, value) in parameters {
         let (reference, variable) = unit.description().find(name).unwrap();
         unit.values_mut()[reference] = match (variable.kind, *value) {
@@ -78,38 +79,29 @@ fn with(mut unit: Box<dyn Unit>, parameters: &[(&str, Value<'_>)]) -> Box<dyn Un
             (kind, value) => panic!("{name}: {kind:?} {value:?}"),
         };
     }
-    unit.initialise(0.0).unwrap();
-    unit
 }
 
 /// J of (15) of the units' own loop.
 fn cost_in_the_units(tuned: &Tuned) -> f64 {
-    let mut plant = with((RIG.plant.create)(), &[]);
-    let mut controller = with((RIG.controller.create)(), &tuned.parameters);
-    let get = |unit: &dyn Unit, name: &str| unit.values()[unit.description().find(name).unwrap().0];
-    let set = |unit: &mut dyn Unit, name: &str, value: f64| {
-        let (reference, _) = unit.description().find(name).unwrap();
-        unit.values_mut()[reference] = value;
-    };
-    let set_point = get(&*plant, "sensor_voltage");
+    let mut units = ClosedLoop::of(&RIG, ExchangeOrder::ControllerFirst);
+    set_all(&mut *units.controller, &tuned.parameters);
+    units.start(0.0).unwrap();
+    units.step_size = SAMPLE_TIME;
+    let set_point = get(&*units.plant, "sensor_voltage");
     let (mut squares, mut peaks, samples) = ([0.0; 2], [[f64::MIN; 2]; 2], 2001);
     for sample in 0..samples {
-        for (output, input) in RIG.sensing {
-            set(&mut *controller, input, get(&*plant, output));
-        }
         let time = f64::from(sample) * SAMPLE_TIME;
-        set(&mut *controller, "reference", set_point + Reference::SineAndStep.at(time));
-        controller.advance(SAMPLE_TIME, &mut Silence).unwrap();
-        let truth = ["position", "velocity"].map(|name| get(&*plant, name));
-        let estimate = ["estimate.position", "estimate.velocity"].map(|name| get(&*controller, name));
+        set(&mut *units.controller, "reference", set_point + Reference::SineAndStep.at(time));
+        units.step_controller().unwrap();
+        let truth = ["position", "velocity"].map(|name| get(&*units.plant, name));
+        let estimate = ["estimate.position", "estimate.velocity"].map(|name| get(&*units.controller, name));
         for state in 0..2 {
             squares[state] += (truth[state] - estimate[state]).powi(2);
         }
         for (peak, values) in peaks.iter_mut().zip([truth, estimate]) {
             *peak = [peak[0].max(values[0]), peak[1].max(values[1].abs())];
         }
-        set(&mut *plant, "voltage", get(&*controller, "voltage"));
-        plant.advance(SAMPLE_TIME, &mut Silence).unwrap();
+        units.step_plant().unwrap();
     }
     let rms = squares.map(|square| (square / f64::from(samples)).sqrt());
     let overshoot = [0, 1].map(|state| f64::max(peaks[1][state] - peaks[0][state], 0.0));

@@ -6,7 +6,7 @@ use std::time::Instant;
 use super::scenario::{DREM, NEWTON};
 use crate::host::Value;
 use crate::study::StudyError;
-use crate::study::claim::{Claim, Measurement, Verdict};
+use crate::study::claim::Claim;
 use crate::study::loop_packages::LoopPackages;
 
 /// Shortest sample time that is used \[s\].
@@ -42,19 +42,15 @@ fn tick(packages: &LoopPackages, observer: &str) -> Result<f64, StudyError> {
 
 pub fn claim(packages: &LoopPackages) -> Result<Claim, StudyError> {
     let (drem, newton) = (tick(packages, DREM)?, tick(packages, NEWTON)?);
-    Ok(Claim {
-        id: "computational_complexity_is_high",
-        statement: "The computational complexity is relatively high for this kind of application.".to_owned(),
-        source: "Section 6, conclusions",
-        verdict: Verdict::of(drem > 0.1 * SAMPLE_TIME),
-        measured: vec![
-            Measurement::new("time of a tick of drem, law included, on this machine", 1e6 * drem, "µs"),
-            Measurement::new("time of a tick of polynomial_newton", 1e6 * newton, "µs"),
-            Measurement::new("sample time", 1e6 * SAMPLE_TIME, "µs"),
-            Measurement::new("first-order filters of drem", 32.0, "1"),
-        ],
-        criterion: "More than a tenth of the sample time, on the machine that wrote this; scale it to yours. A tick is 12 prefilters, \
-                    20 filters, two 4 x 4 determinants and an exponential or two."
-            .to_owned(),
-    })
+    Ok(Claim::new("computational_complexity_is_high", "Section 6, conclusions")
+        .stating("The computational complexity is relatively high for this kind of application.")
+        .measured("time of a tick of drem, law included, on this machine", 1e6 * drem, "µs")
+        .measured("time of a tick of polynomial_newton", 1e6 * newton, "µs")
+        .measured("sample time", 1e6 * SAMPLE_TIME, "µs")
+        .measured("first-order filters of drem", 32.0, "1")
+        .judged(
+            drem > 0.1 * SAMPLE_TIME,
+            "More than a tenth of the sample time, on the machine that wrote this; scale it to yours. A \
+             tick is 12 prefilters, 20 filters, two 4 x 4 determinants and an exponential or two.",
+        ))
 }

@@ -1,12 +1,10 @@
 //! All runs that figures, tables and claims look at.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-
-use rayon::prelude::*;
-
-use super::scenario::{ADAPTIVE, DREM, NEWTON, Run, Scenario, simulate};
+use super::scenario::{ADAPTIVE, DREM, NEWTON, Scenario, simulate};
 use crate::signal::BallReference::{self, Constant, Sinusoids, Steps};
 use crate::study::loop_packages::LoopPackages;
+use crate::study::run::Run;
+use crate::study::sweep::sweep;
 use crate::study::{Progress, StudyError};
 
 pub const REFERENCES: [BallReference; 2] = [Sinusoids, Steps];
@@ -116,16 +114,8 @@ impl Runs {
             queue(by(SAMPLE_TIMES, |sample_time| sampled(NEWTON, Sinusoids, sample_time))),
             queue(by(SAMPLE_TIMES, |sample_time| sampled(NEWTON, Steps, sample_time))),
         ];
-        let done = AtomicUsize::new(0);
-        let mut runs: Vec<Run> = scenarios
-            .par_iter()
-            .map(|scenario| {
-                let run = simulate(packages, scenario)?;
-                let count = done.fetch_add(1, Ordering::Relaxed) + 1;
-                progress(0.95 * count as f64 / scenarios.len() as f64, "ball: simulating");
-                Ok(run)
-            })
-            .collect::<Result<_, StudyError>>()?;
+        let mut runs =
+            sweep(&scenarios, progress, "ball: simulating", |scenario| simulate(packages, scenario))?;
         let mut batches = places.map(|place| runs.drain(..place.len()).collect::<Vec<Run>>()).into_iter();
         let mut next = || batches.next().unwrap_or_default();
         Ok(Self {

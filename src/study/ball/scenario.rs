@@ -5,6 +5,8 @@ use crate::plant::levitated_ball::LevitatedBall;
 use crate::signal::BallReference;
 use crate::study::StudyError;
 use crate::study::loop_packages::LoopPackages;
+use crate::study::metrics::{difference, root_mean_square};
+use crate::study::run::Run;
 
 /// Time between the rows that are kept of a run \[s\]; the loop itself runs faster.
 const ROW_INTERVAL: f64 = 1e-3;
@@ -75,26 +77,6 @@ impl Scenario {
     }
 }
 
-/// Rows of a run, one per millisecond or per tick if those are rarer; states in the order position \[m\], velocity
-/// \[m/s\], flux \[Wb\].
-#[derive(Clone, Debug, Default)]
-pub struct Run {
-    /// \[s\]
-    pub time: Vec<f64>,
-    pub state: [Vec<f64>; 3],
-    pub estimate: [Vec<f64>; 3],
-    /// y* \[m\]
-    pub reference: Vec<f64>,
-    /// \[A\]
-    pub current: Vec<f64>,
-    /// \[V\]
-    pub voltage: Vec<f64>,
-    /// Delta, scaled by kappa
-    pub excitation: Vec<f64>,
-    /// Time at which the ball first touched a stop \[s\].
-    pub lost_at: Option<f64>,
-}
-
 const RECORDED: [(&str, &str); 11] = [
     ("plant", "position"),
     ("plant", "velocity"),
@@ -109,13 +91,14 @@ const RECORDED: [(&str, &str); 11] = [
     ("plant", "contact"),
 ];
 
-/// Runs a scenario.
+/// Runs a scenario. Rows are kept for every millisecond, or every tick if those are rarer; added to what is recorded are
+/// [`FLUX_ERROR`] and [`TRACKING_ERROR`].
 pub fn simulate(packages: &LoopPackages, scenario: &Scenario) -> Result<Run, StudyError> {
     let real = Value::Real;
     let Scenario { prefilters, filters, .. } = *scenario;
     let reference = |time: f64| scenario.target + scenario.reference.at(time);
     let mut wire = None;
-    let trace = packages.simulate_with(
+    let run = packages.simulate_with(
         &[("initial.position", real(scenario.target)), ("sensor.noise", real(scenario.noise))],
         &[
             ("observer.kind", Value::Text(scenario.observer)),
@@ -148,102 +131,32 @@ pub fn simulate(packages: &LoopPackages, scenario: &Scenario) -> Result<Run, Stu
             controller.set(handle, reference(time))
         },
     )?;
-    let touches = trace.column("plant.contact").unwrap_or_default();
-    let lost_at = trace.time.iter().zip(touches).find(|(_, touch)| **touch != 0.0).map(|(time, _)| *time);
-    let stride = (ROW_INTERVAL / scenario.sample_time).round().max(1.0) as usize;
-    let thin = |column: &[f64]| -> Vec<f64> { column.iter().step_by(stride).copied().collect() };
-    let time = thin(&trace.time);
-    let mut columns = trace.columns.iter().map(|column| thin(column));
-    let mut next = || columns.next().unwrap_or_default();
-    Ok(Run {
-        time,
-        state: [next(), next(), next()],
-        estimate: [next(), next(), next()],
-        reference: next(),
-        current: next(),
-        voltage: next(),
-        excitation: next(),
-        lost_at,
-    })
+    let run = run.every((ROW_INTERVAL / scenario.sample_time).round().max(1.0) as usize);
+    let flux_error = run.error("flux").iter().map(|error| error / carrying_flux()).collect();
+    let tracking_error = difference(run.state("position"), &run[REFERENCE]);
+    Ok(run.with(FLUX_ERROR, flux_error).with(TRACKING_ERROR, tracking_error))
 }
 
-/// Number of [`Run::state`] and [`Run::estimate`].
-pub const POSITION: usize = 0;
-pub const VELOCITY: usize = 1;
-pub const FLUX: usize = 2;
+/// Column of the error of the flux estimate as a share of lam0.
+pub const FLUX_ERROR: &str = "flux_error";
+/// Column of y - y* \[m\].
+pub const TRACKING_ERROR: &str = "tracking_error";
+/// Column of y* \[m\].
+pub const REFERENCE: &str = "controller.reference.position";
+/// Column of Delta, scaled by kappa.
+pub const EXCITATION: &str = "controller.observer.excitation";
 
-impl Run {
-    /// Estimate minus truth of one state.
-    pub fn error(&self, state: usize) -> Vec<f64> {
-        self.estimate[state]
-            .iter()
-            .zip(&self.state[state])
-            .map(|(estimate, truth)| estimate - truth)
-            .collect()
-    }
-
-    /// Error of the flux estimate as a share of lam0.
-    pub fn flux_error(&self) -> Vec<f64> {
-        self.error(FLUX).iter().map(|error| error / carrying_flux()).collect()
-    }
-
-    /// y - y* \[m\]
-    pub fn tracking_error(&self) -> Vec<f64> {
-        self.state[POSITION].iter().zip(&self.reference).map(|(position, wanted)| position - wanted).collect()
-    }
-
-    /// Rows of the last `duration` \[s\] of a column.
-    pub fn tail<'a>(&self, column: &'a [f64], duration: f64) -> &'a [f64] {
-        let end = self.time.last().copied().unwrap_or(0.0);
-        let first = self.time.partition_point(|time| *time < end - duration - 1e-9);
-        &column[first.min(column.len())..]
-    }
-
-    /// Time \[s\] from which on a column stays within `limit`; infinite if it does not, or if the ball is lost.
-    pub fn settled(&self, column: &[f64], limit: f64) -> f64 {
-        if self.lost_at.is_some() {
-            return f64::INFINITY;
-        }
-        match column.iter().rposition(|value| value.is_nan() || value.abs() > limit) {
-            None => 0.0,
-            Some(last) => self.time.get(last + 1).copied().unwrap_or(f64::INFINITY),
-        }
-    }
-
-    /// t_l \[s\]: the flux error stays below 1 % of lam0.
-    pub fn flux_settled(&self) -> f64 {
-        self.settled(&self.flux_error(), 0.01)
-    }
-
-    /// t_e \[s\]: |y - y*| stays below `limit` \[m\].
-    pub fn tracking_settled(&self, limit: f64) -> f64 {
-        self.settled(&self.tracking_error(), limit)
-    }
+/// t_l \[s\]: the flux error stays below 1 % of lam0.
+pub fn flux_settled(run: &Run) -> f64 {
+    run.settled(&run[FLUX_ERROR], 0.01)
 }
 
-/// Largest magnitude.
-pub fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |peak, value| peak.max(value.abs()))
+/// t_e \[s\]: |y - y*| stays below `limit` \[m\].
+pub fn tracking_settled(run: &Run, limit: f64) -> f64 {
+    run.settled(&run[TRACKING_ERROR], limit)
 }
 
-/// Root mean square.
-pub fn root_mean_square(values: &[f64]) -> f64 {
-    (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn settling_is_for_good_and_never_for_a_lost_ball() {
-        let mut run = Run { time: vec![0.0, 1.0, 2.0, 3.0], ..Run::default() };
-        assert_eq!(run.settled(&[1.0, 0.0, 1.0, 0.0], 0.5), 3.0);
-        assert_eq!(run.settled(&[0.0; 4], 0.5), 0.0);
-        assert_eq!(run.settled(&[0.0, 0.0, 0.0, 1.0], 0.5), f64::INFINITY);
-        assert_eq!(run.tail(&[1.0, 2.0, 3.0, 4.0], 1.0), [3.0, 4.0]);
-        run.lost_at = Some(1.0);
-        assert_eq!(run.settled(&[0.0; 4], 0.5), f64::INFINITY);
-        assert_eq!(root_mean_square(&[3.0, -4.0, 0.0, 0.0]), 2.5);
-    }
+/// Root mean square of a column over the last second.
+pub fn last_second(run: &Run, name: &str) -> f64 {
+    root_mean_square(run.last(1.0, &run[name]))
 }

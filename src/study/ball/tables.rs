@@ -5,10 +5,12 @@ use super::runs::{
     COMPARED_OBSERVERS, FILTER_SETS, FLUX_ERRORS, FROZEN_FLUX_ERROR, FROZEN_RATES, FROZEN_TARGET, GAINS,
     POORLY_EXCITED_GAINS, REFERENCES, Runs, SAMPLE_TIMES,
 };
-use super::scenario::{Run, VELOCITY, largest, root_mean_square};
+use super::scenario::{EXCITATION, FLUX_ERROR, TRACKING_ERROR, flux_settled, last_second, tracking_settled};
 use crate::plant::levitated_ball::LevitatedBall;
 use crate::study::Summary;
+use crate::study::metrics::{peak, root_mean_square};
 use crate::study::report::quantity;
+use crate::study::run::Run;
 
 pub fn all(runs: &Runs) -> Vec<Summary> {
     vec![
@@ -19,14 +21,6 @@ pub fn all(runs: &Runs) -> Vec<Summary> {
         frozen(runs),
         filters(runs),
     ]
-}
-
-fn summary(title: &str, headers: &[&str], rows: Vec<Vec<String>>) -> Summary {
-    Summary {
-        title: title.to_owned(),
-        headers: headers.iter().map(|header| (*header).to_owned()).collect(),
-        rows,
-    }
 }
 
 /// A settling time, which may be infinite.
@@ -48,23 +42,22 @@ fn convergence(runs: &Runs) -> Summary {
         FLUX_ERRORS.iter().enumerate().map(move |(k, error)| {
             let run = &runs.flux_errors[reference][k];
             let continuous = FLUX_ERROR_RUNS[reference][k];
-            let deviation = run.tracking_error();
             vec![
                 format!("{:?}, {:+.0} %", REFERENCES[reference], 100.0 * error).to_lowercase(),
-                settling(run.flux_settled()),
+                settling(flux_settled(run)),
                 settling(continuous.flux_settled),
-                settling(run.tracking_settled(0.05e-3)),
+                settling(tracking_settled(run, 0.05e-3)),
                 settling(continuous.tracking_settled),
-                millimetres(largest(&deviation)),
+                millimetres(peak(&run[TRACKING_ERROR])),
                 millimetres(continuous.peak),
-                millimetres(root_mean_square(run.tail(&deviation, 1.0))),
-                percent(root_mean_square(run.tail(&run.flux_error(), 1.0))),
+                millimetres(last_second(run, TRACKING_ERROR)),
+                percent(last_second(run, FLUX_ERROR)),
             ]
         })
     });
-    summary(
+    Summary::new(
         "Figures 2 and 3 sampled at 0.1 ms, beside the continuous loop (which ends below 2e-6 mm)",
-        &[
+        [
             "reference, flux offset",
             "flux error < 1 % from",
             "continuous",
@@ -75,7 +68,7 @@ fn convergence(runs: &Runs) -> Summary {
             "rms of the last second",
             "rms flux error of the last second",
         ],
-        rows.collect(),
+        rows,
     )
 }
 
@@ -84,21 +77,21 @@ fn gains(runs: &Runs) -> Summary {
     let rows = GAINS.iter().enumerate().map(|(k, gain)| {
         let (sinusoids, steps) = (&runs.gains[0][k], &runs.gains[1][k]);
         let (continuous_time, continuous_rest) = STEP_GAINS[k];
-        let left = |run: &Run| root_mean_square(run.tail(&run.flux_error(), 0.1));
+        let left = |run: &Run| root_mean_square(run.last(0.1, &run[FLUX_ERROR]));
         vec![
             format!("{gain}"),
-            settling(sinusoids.flux_settled()),
+            settling(flux_settled(sinusoids)),
             settling(SINUSOID_GAINS[k]),
             percent(left(sinusoids)),
-            settling(steps.flux_settled()),
+            settling(flux_settled(steps)),
             settling(continuous_time),
             percent(left(steps)),
             if continuous_rest > 0.0 { percent(continuous_rest) } else { "converged".to_owned() },
         ]
     });
-    summary(
+    Summary::new(
         "Adaptation gain, flux offset +10 %, 10 s (figures 4 and 5)",
-        &[
+        [
             "gamma [1/s]",
             "sinusoids: flux error < 1 % from",
             "continuous",
@@ -108,13 +101,13 @@ fn gains(runs: &Runs) -> Summary {
             "left at 10 s",
             "continuous",
         ],
-        rows.collect(),
+        rows,
     )
 }
 
 /// Criterion A8.
 fn poorly_excited(runs: &Runs) -> Summary {
-    let left = |run: &Run| percent(run.flux_error().last().map_or(f64::NAN, |error| error.abs()));
+    let left = |run: &Run| percent(peak(run[FLUX_ERROR].last()));
     let rows = POORLY_EXCITED_GAINS.iter().enumerate().map(|(k, gain)| {
         vec![
             format!("{gain}"),
@@ -123,10 +116,11 @@ fn poorly_excited(runs: &Runs) -> Summary {
             left(&runs.well_started[k]),
         ]
     });
-    summary(
-        "Steady-state error and adaptation gain: |flux error| / lam0 after 10 s of steps with kappa = 1e4, no hold (figure 7)",
-        &["gamma [1/s]", "filters from zero", "continuous", "filters from rest"],
-        rows.collect(),
+    Summary::new(
+        "Steady-state error and adaptation gain: |flux error| / lam0 after 10 s of steps with kappa = 1e4, \
+         no hold (figure 7)",
+        ["gamma [1/s]", "filters from zero", "continuous", "filters from rest"],
+        rows,
     )
 }
 
@@ -136,8 +130,8 @@ fn outcome(run: &Run) -> String {
         Some(time) => format!("lost at {}", quantity(time, "s")),
         None => format!(
             "{}, {}",
-            percent(root_mean_square(run.tail(&run.flux_error(), 1.0))),
-            millimetres(root_mean_square(run.tail(&run.tracking_error(), 1.0)))
+            percent(last_second(run, FLUX_ERROR)),
+            millimetres(last_second(run, TRACKING_ERROR))
         ),
     }
 }
@@ -149,10 +143,11 @@ fn sample_times(runs: &Runs) -> Summary {
         });
         std::iter::once(quantity(1e3 * sample_time, "ms")).chain(cells).collect()
     });
-    summary(
-        "Sample time: rms flux error and rms |y - y*| of the last of 6 s, flux offset +10 % at the start, no noise",
-        &["T", "drem, sinusoids", "drem, steps", "polynomial_newton, sinusoids", "polynomial_newton, steps"],
-        rows.collect(),
+    Summary::new(
+        "Sample time: rms flux error and rms |y - y*| of the last of 6 s, flux offset +10 % at the start, \
+         no noise",
+        ["T", "drem, sinusoids", "drem, steps", "polynomial_newton, sinusoids", "polynomial_newton, steps"],
+        rows,
     )
 }
 
@@ -173,22 +168,22 @@ fn frozen(runs: &Runs) -> Summary {
         let end = |column: &[f64]| column.last().copied().unwrap_or(f64::NAN);
         vec![
             quantity(*rate, "1/s"),
-            millimetres(end(&run.tracking_error())),
+            millimetres(end(&run[TRACKING_ERROR])),
             millimetres(offset_at_rest(FROZEN_TARGET, 1.0 - FROZEN_FLUX_ERROR, *rate)),
-            quantity(1e3 * end(&run.error(VELOCITY)), "mm/s"),
+            quantity(1e3 * end(&run.error("velocity")), "mm/s"),
         ]
     });
-    summary(
-        "A frozen flux error of 2 % at y* = 1 mm: the loop stays stable but biased; the mechanical gains reduce the bias, so \
-         they do not explain an error that grows with a gain",
-        &["w_p = w_y", "y - y* after 3 s", "in closed form", "error of the velocity estimate"],
-        rows.collect(),
+    Summary::new(
+        "A frozen flux error of 2 % at y* = 1 mm: the loop stays stable but biased; the mechanical gains \
+         reduce the bias, so they do not explain an error that grows with a gain",
+        ["w_p = w_y", "y - y* after 3 s", "in closed form", "error of the velocity estimate"],
+        rows,
     )
 }
 
 /// rms of Delta without its scale after the first second.
 pub fn excitation(run: &Run) -> f64 {
-    root_mean_square(run.tail(&run.excitation, 5.0))
+    root_mean_square(run.last(5.0, &run[EXCITATION]))
 }
 
 fn filters(runs: &Runs) -> Summary {
@@ -201,10 +196,10 @@ fn filters(runs: &Runs) -> Summary {
             format!("{:.1e}", excitation(&runs.filter_sets[1][k])),
         ]
     });
-    summary(
+    Summary::new(
         "Filters decide over the excitation: rms of Delta (kappa = 1), the observer only watching",
-        &["alpha [1/s]", "beta [1/s]", "sinusoids", "steps"],
-        rows.collect(),
+        ["alpha [1/s]", "beta [1/s]", "sinusoids", "steps"],
+        rows,
     )
 }
 

@@ -1,14 +1,12 @@
 //! All runs: every contender on every draw of every spread.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-
-use rayon::prelude::*;
-
 use super::contender::{CONTENDERS, Contender};
 use super::spread::SPREADS;
 use super::trial::{self, Outcome};
 use crate::signal::BallReference::{self, Sinusoids, Steps};
 use crate::study::loop_packages::LoopPackages;
+use crate::study::metrics;
+use crate::study::sweep::sweep;
 use crate::study::{Progress, StudyError};
 
 pub const REFERENCES: [BallReference; 2] = [Sinusoids, Steps];
@@ -38,19 +36,11 @@ impl Campaign {
                 }
             }
         }
-        let done = AtomicUsize::new(0);
-        let outcomes = cases
-            .par_iter()
-            .map(|&(spread, reference, (field, who), run)| {
-                let draw = SPREADS[spread].draw(run);
-                let outcome = trial::run(packages, &fields[field][who], REFERENCES[reference], &draw)?;
-                let count = done.fetch_add(1, Ordering::Relaxed) + 1;
-                if count.is_multiple_of(50) {
-                    progress(count as f64 / cases.len() as f64, "ball-monte-carlo: simulating");
-                }
-                Ok(outcome)
-            })
-            .collect::<Result<Vec<Outcome>, StudyError>>()?;
+        let action = "ball-monte-carlo: simulating";
+        let outcomes = sweep(&cases, progress, action, |&(spread, reference, (field, who), run)| {
+            let draw = SPREADS[spread].draw(run);
+            trial::run(packages, &fields[field][who], REFERENCES[reference], &draw)
+        })?;
         let mut outcomes = outcomes.into_iter();
         let outcomes = SPREADS
             .iter()
@@ -81,10 +71,5 @@ impl Campaign {
 
 /// Median over all runs, lost ones counting as infinite.
 pub fn median(outcomes: &[Outcome], value: impl Fn(&Outcome) -> f64) -> f64 {
-    let mut values: Vec<f64> = outcomes.iter().map(value).collect();
-    values.sort_by(f64::total_cmp);
-    match values.len() {
-        0 => f64::NAN,
-        count => 0.5 * (values[(count - 1) / 2] + values[count / 2]),
-    }
+    metrics::median(outcomes.iter().map(value))
 }

@@ -6,8 +6,10 @@ use super::spread::{Draw, SPREADS};
 use super::trial::Outcome;
 use super::tuning::{NOISES, Score, Tuning};
 use crate::study::Summary;
-use crate::study::claim::{Claim, Measurement, Verdict};
+use crate::study::claim::Claim;
+use crate::study::metrics::largest;
 use crate::study::report::quantity;
+use crate::study::sweep::indices;
 
 const BEYOND: &str = "not in the paper";
 const A: usize = 0;
@@ -26,28 +28,28 @@ fn survivors(campaign: &Campaign, spread: usize, who: usize) -> [f64; 2] {
     both(|reference| campaign.survivors(spread, reference, who) as f64)
 }
 
-fn measurements(what: &str, values: [f64; 2], unit: &'static str) -> [Measurement; 2] {
-    [0, 1].map(|k| Measurement::new(format!("{what}, {}", NAMES[k]), values[k], unit))
+/// A number on both references.
+fn on_both(what: &str, values: [f64; 2]) -> impl Iterator<Item = (String, f64)> {
+    NAMES.map(|name| format!("{what}, {name}")).into_iter().zip(values)
 }
 
 fn adaptive_survives(campaign: &Campaign) -> Claim {
     let runs = f64::from(campaign.runs(A));
     let adaptive = survivors(campaign, A, ADAPTIVE_RESISTANCE);
-    let mut measured: Vec<Measurement> =
-        measurements(&format!("survivors of {runs}, adaptive Newton, resistance"), adaptive, "1").into();
-    measured.extend(measurements("the same, voltage offset", survivors(campaign, A, ADAPTIVE_OFFSET), "1"));
-    measured.extend(measurements("Newton", survivors(campaign, A, NEWTON), "1"));
-    measured.extend(measurements("DREM, retuned", survivors(campaign, A, DREM), "1"));
-    Claim {
-        id: "adaptive_newton_survives_spread_a",
-        statement: format!("Learning the resistance keeps the ball up when nothing is known exactly ({}).", SPREADS[A].text()),
-        source: BEYOND,
-        verdict: Verdict::of(adaptive.iter().all(|count| *count >= 0.995 * runs)),
-        measured,
-        criterion: "At least 995 of 1000 runs of 4 s on either reference touch no stop. Parameters are drawn uniformly within \
-                    their spread, the same draws for every estimator."
-            .to_owned(),
-    }
+    Claim::new("adaptive_newton_survives_spread_a", BEYOND)
+        .stating(format!(
+            "Learning the resistance keeps the ball up when nothing is known exactly ({}).",
+            SPREADS[A].text()
+        ))
+        .measured_each(on_both(&format!("survivors of {runs}, adaptive Newton, resistance"), adaptive), "1")
+        .measured_each(on_both("the same, voltage offset", survivors(campaign, A, ADAPTIVE_OFFSET)), "1")
+        .measured_each(on_both("Newton", survivors(campaign, A, NEWTON)), "1")
+        .measured_each(on_both("DREM, retuned", survivors(campaign, A, DREM)), "1")
+        .judged(
+            adaptive.iter().all(|count| *count >= 0.995 * runs),
+            "At least 995 of 1000 runs of 4 s on either reference touch no stop. Parameters are drawn \
+             uniformly within their spread, the same draws for every estimator.",
+        )
 }
 
 fn adaptive_is_accurate(campaign: &Campaign) -> Claim {
@@ -55,29 +57,30 @@ fn adaptive_is_accurate(campaign: &Campaign) -> Claim {
         |who: usize, of: fn(&Outcome) -> f64| both(|reference| median(campaign.of(A, reference, who), of));
     let position = value(ADAPTIVE_RESISTANCE, Outcome::position).map(|error| 1e3 * error);
     let flux = value(ADAPTIVE_RESISTANCE, Outcome::flux);
-    let mut measured: Vec<Measurement> = measurements("median rms |y - y*|", position, "mm").into();
-    measured.extend(measurements("median rms flux error, share of lam0", flux, "1"));
-    Claim {
-        id: "adaptive_newton_is_accurate",
-        statement: "It follows the sinusoids within 0.06 mm and the steps within 0.04 mm.".to_owned(),
-        source: BEYOND,
-        verdict: Verdict::of(position[0] <= 0.06 && position[1] <= 0.04),
-        measured,
-        criterion: "Median over all runs of spread A, lost ones counted as infinite, of the rms |y - y*| from 2 to 4 s."
-            .to_owned(),
-    }
+    Claim::new("adaptive_newton_is_accurate", BEYOND)
+        .stating("It follows the sinusoids within 0.06 mm and the steps within 0.04 mm.")
+        .measured_each(on_both("median rms |y - y*|", position), "mm")
+        .measured_each(on_both("median rms flux error, share of lam0", flux), "1")
+        .judged(
+            position[0] <= 0.06 && position[1] <= 0.04,
+            "Median over all runs of spread A, lost ones counted as infinite, of the rms |y - y*| from 2 to \
+             4 s.",
+        )
 }
 
 fn drem_under_noise(tuning: &Tuning, campaign: &Campaign) -> Claim {
     let loudest = NOISES.len() - 1;
     let best = [0, 1].map(|reference| tuning.scores[reference][loudest][tuning.best(reference, loudest)]);
     let usable = best.iter().all(|score| score.is_within(0.01));
-    let mut measured: Vec<Measurement> = measurements(
-        "rms flux error of the best setting at 1 mA, share of lam0",
-        best.map(|score| score.flux),
-        "1",
-    )
-    .into();
+    let mut claim = Claim::new("drem_stands_noise_of_1_ma", BEYOND)
+        .stating("DREM, retuned for it, estimates the flux to 1 % in spite of 1 mA of noise.")
+        .measured_each(
+            on_both(
+                "rms flux error of the best setting at 1 mA, share of lam0",
+                best.map(|score| score.flux),
+            ),
+            "1",
+        );
     for (noise, deviation) in NOISES.iter().enumerate() {
         let fine = both(|reference| {
             tuning.scores[reference][noise].iter().filter(|score| score.is_within(0.01)).count() as f64
@@ -87,20 +90,17 @@ fn drem_under_noise(tuning: &Tuning, campaign: &Campaign) -> Claim {
             tuning.settings.len(),
             quantity(1e3 * deviation, "mA")
         );
-        measured.extend(measurements(&what, fine, "1"));
+        claim = claim.measured_each(on_both(&what, fine), "1");
     }
-    measured.extend(measurements("survivors of spread C, DREM retuned", survivors(campaign, C, DREM), "1"));
-    measured.extend(measurements("the same without adaptation", survivors(campaign, C, FROZEN), "1"));
-    Claim {
-        id: "drem_stands_noise_of_1_ma",
-        statement: "DREM, retuned for it, estimates the flux to 1 % in spite of 1 mA of noise.".to_owned(),
-        source: BEYOND,
-        verdict: Verdict::of(usable),
-        measured,
-        criterion: "Exact parameters, T = 0.1 ms, gains, filters and normalisation searched: on each reference some \
-                    setting loses no run and has an rms flux error of at most 1 %. A ball that stays up because the estimate hardly moves does not count."
-            .to_owned(),
-    }
+    claim
+        .measured_each(on_both("survivors of spread C, DREM retuned", survivors(campaign, C, DREM)), "1")
+        .measured_each(on_both("the same without adaptation", survivors(campaign, C, FROZEN)), "1")
+        .judged(
+            usable,
+            "Exact parameters, T = 0.1 ms, gains, filters and normalisation searched: on each reference \
+             some setting loses no run and has an rms flux error of at most 1 %. A ball that stays up \
+             because the estimate hardly moves does not count.",
+        )
 }
 
 /// Survival and errors of every contender.
@@ -120,9 +120,9 @@ pub fn tables(tuning: &Tuning, contenders: &[Contender], campaign: &Campaign) ->
                 row.push(cause(campaign, spread, who));
                 row
             });
-            Summary {
-                title: format!("Spread {}: {}", widths.name, widths.text()),
-                headers: [
+            Summary::new(
+                format!("Spread {}: {}", widths.name, widths.text()),
+                [
                     "estimator",
                     "T",
                     "sinusoids: survive",
@@ -132,11 +132,9 @@ pub fn tables(tuning: &Tuning, contenders: &[Contender], campaign: &Campaign) ->
                     "median rms |y - y*|",
                     "median rms flux error",
                     "lost runs (both references)",
-                ]
-                .map(str::to_owned)
-                .to_vec(),
-                rows: rows.collect(),
-            }
+                ],
+                rows,
+            )
         })
         .collect();
     tables.push(tuning_table(tuning));
@@ -175,9 +173,8 @@ fn cause(campaign: &Campaign, spread: usize, who: usize) -> String {
 }
 
 fn tuning_table(tuning: &Tuning) -> Summary {
-    let cases =
-        (0..REFERENCES.len()).flat_map(|reference| (0..NOISES.len()).map(move |noise| (reference, noise)));
-    let rows = cases.map(|(reference, noise)| {
+    let cases = indices([REFERENCES.len(), NOISES.len()]).into_iter();
+    let rows = cases.map(|[reference, noise]| {
         let scores = &tuning.scores[reference][noise];
         let best = tuning.best(reference, noise);
         let newton = tuning.newton[reference][noise];
@@ -193,14 +190,14 @@ fn tuning_table(tuning: &Tuning) -> Summary {
             finite(1e3 * newton.position, "mm"),
         ]
     });
-    Summary {
-        title: format!(
-            "How DREM was tuned: {} settings at T = 0.1 ms, exact parameters, flux offsets of +-5 and +-10 % (8 % rms is what not \
-             adapting leaves). The best one loses fewest runs and then has the smallest flux error; each spread uses the one \
-             for its noise and reference",
+    Summary::new(
+        format!(
+            "How DREM was tuned: {} settings at T = 0.1 ms, exact parameters, flux offsets of +-5 and +-10 \
+             % (8 % rms is what not adapting leaves). The best one loses fewest runs and then has the \
+             smallest flux error; each spread uses the one for its noise and reference",
             tuning.settings.len()
         ),
-        headers: [
+        [
             "reference, noise",
             "settings that lose nothing",
             "of these below 1 %",
@@ -209,11 +206,9 @@ fn tuning_table(tuning: &Tuning) -> Summary {
             "its rms |y - y*|",
             "Newton: rms flux error",
             "Newton: rms |y - y*|",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: rows.collect(),
-    }
+        ],
+        rows,
+    )
 }
 
 /// Which estimator to choose when, from the numbers.
@@ -226,9 +221,7 @@ pub fn advice(tuning: &Tuning, contenders: &[Contender], campaign: &Campaign) ->
             .sum()
     };
     let error = |spread: usize, who: usize| -> f64 {
-        (0..REFERENCES.len())
-            .map(|reference| median(campaign.of(spread, reference, who), Outcome::position))
-            .fold(0.0, f64::max)
+        largest(both(|reference| median(campaign.of(spread, reference, who), Outcome::position)))
     };
     let choices: Vec<String> = SPREADS
         .iter()
@@ -267,19 +260,19 @@ pub fn advice(tuning: &Tuning, contenders: &[Contender], campaign: &Campaign) ->
             choices.join("; ")
         ),
         format!(
-            "DREM is for reproducing the paper: with exact parameters its best setting found keeps the flux error below 1 % in all \
-             trial runs {} (current noises of {} were tried). A wrong resistance or a voltage offset, which its open \
-             integration sums up, loses {} of {} balls in spread A.",
+            "DREM is for reproducing the paper: with exact parameters its best setting found keeps the flux \
+             error below 1 % in all trial runs {} (current noises of {} were tried). A wrong resistance or \
+             a voltage offset, which its open integration sums up, loses {} of {} balls in spread A.",
             limits.join(" and "),
             NOISES.map(|noise| quantity(1e3 * noise, "mA")).join(", "),
             lost(A, DREM),
             2 * campaign.runs(A)
         ),
         format!(
-            "With a real coil take polynomial_newton_adaptive and let it learn the resistance: {} of {} balls of spread A are \
-             lost, against {} with polynomial_newton and {} when it learns a voltage offset instead. Set observer.startup_hold \
-             to 0.02 s for them: a wrong flux should be corrected before it moves the ball. polynomial_newton alone is for \
-             models that are known exactly.",
+            "With a real coil take polynomial_newton_adaptive and let it learn the resistance: {} of {} \
+             balls of spread A are lost, against {} with polynomial_newton and {} when it learns a voltage \
+             offset instead. Set observer.startup_hold to 0.02 s for them: a wrong flux should be corrected \
+             before it moves the ball. polynomial_newton alone is for models that are known exactly.",
             lost(A, ADAPTIVE_RESISTANCE),
             2 * campaign.runs(A),
             lost(A, NEWTON),

@@ -1,11 +1,13 @@
 //! Distributions of the errors, what was lost, and DREM's tuning.
 
-use super::campaign::{Campaign, REFERENCES};
+use super::campaign::{Campaign, REFERENCES, median};
 use super::contender::{ADAPTIVE_OFFSET, ADAPTIVE_RESISTANCE, Contender, NEWTON};
 use super::spread::{Draw, SPREADS};
 use super::trial::Outcome;
 use super::tuning::{GAINS, NOISES, NORMALISATIONS, Score, Tuning};
-use crate::study::chart::{Figure, Panel, Series, Stroke};
+use crate::chart::{Panel, Series, Stroke};
+use crate::study::metrics::indicator;
+use crate::study::sweep::indices;
 use crate::study::{FigureWithData, Table};
 
 /// Noiseless runs stand here on the axis of the noise \[A\].
@@ -13,41 +15,40 @@ const NO_NOISE: f64 = 1e-6;
 
 pub fn all(tuning: &Tuning, contenders: &[Contender], campaign: &Campaign) -> Vec<FigureWithData> {
     let position = distributions(
+        FigureWithData::new(
+            "ball_monte_carlo_position",
+            "Monte-Carlo: deviation from the wanted position",
+            data(contenders, campaign),
+        ),
+        "Share of all runs whose rms |y - y*| from 2 to 4 s is below the value on the axis. A curve ends at \
+         the share of runs that survive.",
         contenders,
         campaign,
         ("rms |y - y*| [mm]", 1e3, Outcome::position),
-        "Monte-Carlo: deviation from the wanted position",
-        "Share of all runs whose rms |y - y*| from 2 to 4 s is below the value on the axis. A curve ends at the share of \
-         runs that survive.",
     );
     let flux = distributions(
+        FigureWithData::new(
+            "ball_monte_carlo_flux",
+            "Monte-Carlo: error of the flux estimate",
+            medians(contenders, campaign),
+        ),
+        "The same for the error of the flux estimate: who survives without estimating the flux is not \
+         better off.",
         contenders,
         campaign,
         ("rms flux error / lam0 [%]", 100.0, Outcome::flux),
-        "Monte-Carlo: error of the flux estimate",
-        "The same for the error of the flux estimate: who survives without estimating the flux is not better off.",
     );
-    let data = data(contenders, campaign);
-    vec![
-        FigureWithData { name: "ball_monte_carlo_position".to_owned(), figure: position, table: data },
-        FigureWithData {
-            name: "ball_monte_carlo_flux".to_owned(),
-            figure: flux,
-            table: medians(contenders, campaign),
-        },
-        losses(campaign),
-        tuning_figure(tuning),
-    ]
+    vec![position, flux, losses(campaign), tuning_figure(tuning)]
 }
 
 /// A panel per spread and reference with a cumulative distribution per contender.
 fn distributions(
+    figure: FigureWithData,
+    caption: &str,
     contenders: &[Contender],
     campaign: &Campaign,
     (label, factor, value): (&str, f64, fn(&Outcome) -> f64),
-    title: &str,
-    caption: &str,
-) -> Figure {
+) -> FigureWithData {
     let mut panels = Vec::new();
     for (reference, signal) in REFERENCES.iter().enumerate() {
         for (spread, widths) in SPREADS.iter().enumerate() {
@@ -63,18 +64,13 @@ fn distributions(
                 let points = values.iter().enumerate().map(|(rank, value)| (factor * value, share(rank)));
                 // Where there is room for it.
                 let legend = if (spread, reference) == (2, 1) { contender.name } else { "" };
-                panel.with(Series::new(legend, who, Stroke::Held, points))
+                panel.held(legend, who, points)
             }));
         }
     }
     let spreads: Vec<String> =
         SPREADS.iter().map(|spread| format!("{}: {}", spread.name, spread.text())).collect();
-    Figure {
-        title: title.to_owned(),
-        caption: format!("{caption} Spreads: {}.", spreads.join("; ")),
-        columns: SPREADS.len(),
-        panels,
-    }
+    figure.caption(format!("{caption} Spreads: {}.", spreads.join("; "))).panels(SPREADS.len(), panels)
 }
 
 fn capitalised(text: &str) -> String {
@@ -87,16 +83,13 @@ type Part = fn(&Draw) -> f64;
 
 /// A row per run.
 fn data(contenders: &[Contender], campaign: &Campaign) -> Table {
-    let cases: Vec<(usize, usize, u32)> = (0..SPREADS.len())
-        .flat_map(|spread| (0..REFERENCES.len()).map(move |reference| (spread, reference)))
-        .flat_map(|(spread, reference)| (0..campaign.runs(spread)).map(move |run| (spread, reference, run)))
+    let cases: Vec<(usize, usize, u32)> = indices([SPREADS.len(), REFERENCES.len()])
+        .into_iter()
+        .flat_map(|[spread, reference]| (0..campaign.runs(spread)).map(move |run| (spread, reference, run)))
         .collect();
     let mut table = Table::default();
     let mut add = |header: String, value: &dyn Fn(usize, usize, u32) -> f64| {
-        table.headers.push(header);
-        table
-            .columns
-            .push(cases.iter().map(|&(spread, reference, run)| value(spread, reference, run)).collect());
+        table.add(header, cases.iter().map(|&(spread, reference, run)| value(spread, reference, run)));
     };
     add("spread [1 = A]".to_owned(), &|spread, _, _| (spread + 1) as f64);
     add("reference [1 = sinusoids; 2 = steps]".to_owned(), &|_, reference, _| (reference + 1) as f64);
@@ -133,13 +126,10 @@ fn data(contenders: &[Contender], campaign: &Campaign) -> Table {
 
 /// A row per spread and reference.
 fn medians(contenders: &[Contender], campaign: &Campaign) -> Table {
-    let cases: Vec<(usize, usize)> = (0..SPREADS.len())
-        .flat_map(|spread| (0..REFERENCES.len()).map(move |reference| (spread, reference)))
-        .collect();
+    let cases = indices([SPREADS.len(), REFERENCES.len()]);
     let mut table = Table::default();
     let mut add = |header: String, value: &dyn Fn(usize, usize) -> f64| {
-        table.headers.push(header);
-        table.columns.push(cases.iter().map(|&(spread, reference)| value(spread, reference)).collect());
+        table.add(header, cases.iter().map(|&[spread, reference]| value(spread, reference)));
     };
     add("spread [1 = A]".to_owned(), &|spread, _| (spread + 1) as f64);
     add("reference [1 = sinusoids; 2 = steps]".to_owned(), &|_, reference| (reference + 1) as f64);
@@ -150,10 +140,10 @@ fn medians(contenders: &[Contender], campaign: &Campaign) -> Table {
             campaign.survivors(spread, reference, who) as f64
         });
         add(format!("{name}: median rms position error [m]"), &|spread, reference| {
-            super::campaign::median(campaign.of(spread, reference, who), Outcome::position)
+            median(campaign.of(spread, reference, who), Outcome::position)
         });
         add(format!("{name}: median rms flux error [1]"), &|spread, reference| {
-            super::campaign::median(campaign.of(spread, reference, who), Outcome::flux)
+            median(campaign.of(spread, reference, who), Outcome::flux)
         });
     }
     table
@@ -165,9 +155,8 @@ fn losses(campaign: &Campaign) -> FigureWithData {
     let mut panels = Vec::new();
     let mut table = Table::default();
     let draws: Vec<Draw> = (0..campaign.runs(spread)).map(|run| SPREADS[spread].draw(run)).collect();
-    table.headers.extend(["resistance error [1]".to_owned(), "flux offset [1]".to_owned()]);
-    table.columns.push(draws.iter().map(|draw| draw.resistance).collect());
-    table.columns.push(draws.iter().map(|draw| draw.flux).collect());
+    table.add("resistance error [1]", draws.iter().map(|draw| draw.resistance));
+    table.add("flux offset [1]", draws.iter().map(|draw| draw.flux));
     for (who, name) in [
         (NEWTON, "Newton"),
         (ADAPTIVE_RESISTANCE, "adaptive, resistance"),
@@ -176,10 +165,8 @@ fn losses(campaign: &Campaign) -> FigureWithData {
         for (reference, signal) in REFERENCES.iter().enumerate() {
             let outcomes = campaign.of(spread, reference, who);
             let title = format!("{name}, {}", format!("{signal:?}").to_lowercase());
-            table.headers.push(format!("{}: lost [1]", title.replace(',', "")));
-            table
-                .columns
-                .push(outcomes.iter().map(|outcome| f64::from(u8::from(!outcome.survived()))).collect());
+            let lost = outcomes.iter().map(|outcome| indicator(!outcome.survived()));
+            table.add(format!("{}: lost [1]", title.replace(',', "")), lost);
             let points = |survived: bool| {
                 let chosen =
                     draws.iter().zip(outcomes).filter(move |(_, outcome)| outcome.survived() == survived);
@@ -189,24 +176,21 @@ fn losses(campaign: &Campaign) -> FigureWithData {
             let panel = Panel::new(title, "initial flux offset [% of lam0]", "error of the resistance [%]")
                 .between(-10.5, 10.5)
                 .from_to(-3.2, 3.2)
-                .with(Series::new(legend("survived"), 8, Stroke::Dots, points(true)))
-                .with(Series::new(legend("lost"), 1, Stroke::Dots, points(false)));
+                .dots(legend("survived"), 8, points(true))
+                .dots(legend("lost"), 1, points(false));
             panels.push(panel);
         }
     }
-    let figure = Figure {
-        title: "Which runs of spread B are lost".to_owned(),
-        caption: "Runs of spread B over the initial flux offset and the error of the resistance.".to_owned(),
-        columns: 2,
-        panels,
-    };
-    FigureWithData { name: "ball_monte_carlo_losses".to_owned(), figure, table }
+    FigureWithData::new("ball_monte_carlo_losses", "Which runs of spread B are lost", table)
+        .caption("Runs of spread B over the initial flux offset and the error of the resistance.")
+        .panels(2, panels)
 }
 
 /// Best DREM per gain and noise, and Newton beside it.
 fn tuning_figure(tuning: &Tuning) -> FigureWithData {
     let mut panels = Vec::new();
-    let mut table = Table { headers: vec!["noise [A]".to_owned()], columns: vec![NOISES.to_vec()] };
+    let mut table = Table::default();
+    table.add("noise [A]", NOISES);
     for (reference, signal) in REFERENCES.iter().enumerate() {
         let signal = format!("{signal:?}").to_lowercase();
         let newton: Vec<Option<Score>> = tuning.newton[reference].iter().copied().map(Some).collect();
@@ -250,26 +234,21 @@ fn tuning_figure(tuning: &Tuning) -> FigureWithData {
         }
         for (name, _, _, scores) in &lines {
             let mut add = |what: &str, value: fn(&Score) -> f64| {
-                table.headers.push(format!("{signal}: {name}: {what}"));
-                table
-                    .columns
-                    .push(scores.iter().map(|score| score.as_ref().map_or(f64::NAN, value)).collect());
+                let values = scores.iter().map(|score| score.as_ref().map_or(f64::NAN, value));
+                table.add(format!("{signal}: {name}: {what}"), values);
             };
             add("share of runs up [1]", |score| score.survival);
             add("rms flux error [1]", |score| score.flux);
             add("rms position error [m]", |score| score.position);
         }
     }
-    let figure = Figure {
-        title: "DREM at its best under noise, exact parameters".to_owned(),
-        caption: format!(
-            "For every gain the best of six sets of filters at T = 0.1 ms, without (solid) and with normalisation (dashed): {} \
-             settings for each noise and reference, flux offsets of +-5 and +-10 %. Errors are those of the runs that are not \
-             lost; an rms flux error of 8 % is what not adapting leaves.",
+    FigureWithData::new("ball_drem_tuning", "DREM at its best under noise, exact parameters", table)
+        .caption(format!(
+            "For every gain the best of six sets of filters at T = 0.1 ms, without (solid) and with \
+             normalisation (dashed): {} settings for each noise and reference, flux offsets of +-5 and +-10 \
+             %. Errors are those of the runs that are not lost; an rms flux error of 8 % is what not \
+             adapting leaves.",
             tuning.settings.len()
-        ),
-        columns: 3,
-        panels,
-    };
-    FigureWithData { name: "ball_drem_tuning".to_owned(), figure, table }
+        ))
+        .panels(3, panels)
 }

@@ -11,6 +11,7 @@ mod tuning;
 use std::path::Path;
 
 use super::loop_packages::LoopPackages;
+use super::sweep::part;
 use super::{Findings, Progress, StudyError};
 use crate::host::Value;
 use crate::unit::system::BALL;
@@ -20,13 +21,16 @@ use spread::SPREADS;
 use tuning::Tuning;
 
 const PROVENANCE: &[&str] = &[
-    "Not in the paper, whose simulations know neither noise nor wrong parameters and whose equations and numbers are lost in \
-     the text at hand: the regression is a valid one of the announced kind, every numeric parameter is assumed or tuned. The \
-     spreads are assumed as well.",
-    "Each run lasts 4 s through the packaged units, errors are scored from 2 s on, and a run is lost as soon as the ball \
-     touches the magnet or the lower stop. The Newton variants run at 0.2 ms with the unit's gains, which were tuned on runs \
-     like these; DREM runs at 0.1 ms, as it cannot do with less, with the setting that a search with exact parameters found best for \
-     the noise and the reference. \"No adaptation\" is DREM with gamma = 0: it shows what survival alone is worth.",
+    "Not in the paper, whose simulations know neither noise nor wrong parameters and whose \
+             equations and numbers are lost in the text at hand: the regression is a valid one of the \
+             announced kind, every numeric parameter is assumed or tuned. The spreads are assumed as \
+             well.",
+    "Each run lasts 4 s through the packaged units, errors are scored from 2 s on, and a run is \
+             lost as soon as the ball touches the magnet or the lower stop. The Newton variants run at \
+             0.2 ms with the unit's gains, which were tuned on runs like these; DREM runs at 0.1 ms, as \
+             it cannot do with less, with the setting that a search with exact parameters found best for \
+             the noise and the reference. \"No adaptation\" is DREM with gamma = 0: it shows what \
+             survival alone is worth.",
 ];
 
 /// Share of the work that tuning is.
@@ -57,14 +61,11 @@ pub fn run(packages: &Path, progress: Progress<'_>) -> Result<Findings, StudyErr
 /// As [`run`], in part.
 pub fn run_extent(packages: &Path, extent: Extent, progress: Progress<'_>) -> Result<Findings, StudyError> {
     let packages = LoopPackages::open(packages, &BALL)?;
-    let tuning =
-        Tuning::simulate(&packages, extent.stride, &|share, action| progress(TUNING * share, action))?;
+    let tuning = Tuning::simulate(&packages, extent.stride, &part(progress, 0.0, TUNING))?;
     let field = |spread: usize, reference: usize| {
         contender::all(&tuning.setting_for(reference, SPREADS[spread].noise))
     };
-    let campaign = Campaign::simulate(&packages, field, extent.runs, &|share, action| {
-        progress(TUNING + (0.99 - TUNING) * share, action);
-    })?;
+    let campaign = Campaign::simulate(&packages, field, extent.runs, &part(progress, TUNING, 0.99))?;
     // For names and sample times, which all fields share.
     let contenders = field(0, 0);
     Ok(Findings {

@@ -79,7 +79,7 @@ const EXACT: Spread = Spread {
 };
 
 /// One run's draw; the same for every contender.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Draw {
     pub resistance: f64,
     pub inductance_constant: f64,

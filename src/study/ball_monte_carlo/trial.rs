@@ -2,11 +2,13 @@
 
 use super::contender::Contender;
 use super::spread::Draw;
-use crate::host::{HostError, Instance, Value};
+use crate::host::{Trace, Value};
 use crate::plant::levitated_ball::LevitatedBall;
 use crate::signal::BallReference;
 use crate::study::StudyError;
 use crate::study::loop_packages::LoopPackages;
+use crate::study::metrics::{difference, root_mean_square};
+use crate::study::run::Run;
 
 /// Length of a run and from when on it is scored \[s\].
 pub const DURATION: f64 = 4.0;
@@ -48,17 +50,11 @@ impl Outcome {
     }
 }
 
-/// Value references of real variables.
-fn references<const N: usize>(instance: &Instance, names: [&str; N]) -> Result<[u32; N], HostError> {
-    let mut found = [0; N];
-    for (reference, name) in found.iter_mut().zip(names) {
-        *reference = instance.variable(name)?.value_reference();
-    }
-    Ok(found)
-}
+/// Steps after which it is looked whether the ball is lost.
+const STEPS_BETWEEN_LOOKS: usize = 100;
 
-/// Runs the loop, controller first, until [`DURATION`] or until the ball touches a stop. The drive adds the draw's offset to
-/// the voltage, so the controller does not know it.
+/// Runs the loop until [`DURATION`] or until the ball touches a stop. The drive adds the draw's offset to the voltage, so
+/// the controller does not know it.
 pub fn run(
     packages: &LoopPackages,
     contender: &Contender,
@@ -73,55 +69,52 @@ pub fn run(
         ..believed
     };
     let carrying_flux = real.equilibrium_flux();
-    let mut plant = packages.plant(&[
+    let plant = [
         ("resistance", Value::Real(real.resistance)),
         ("inductance_constant", Value::Real(real.inductance_constant)),
         ("mass", Value::Real(real.mass)),
         ("initial.flux", Value::Real(carrying_flux)),
         ("sensor.noise", Value::Real(draw.noise)),
         ("sensor.seed", Value::Integer(draw.seed)),
-    ])?;
-    let mut controller = packages.controller(&contender.parameters)?;
+    ];
+    let initial_flux = carrying_flux - draw.flux * believed.equilibrium_flux();
+    let mut controller = contender.parameters.clone();
+    controller.extend([
+        ("observer.initial.flux", Value::Real(initial_flux)),
+        ("controller.reference_filter", Value::Real(reference.filter_rate())),
+    ]);
     let sample_time = contender.sample_time;
-    for (name, value) in [
-        ("sample_time", sample_time),
-        ("observer.initial.flux", carrying_flux - draw.flux * believed.equilibrium_flux()),
-        ("controller.reference_filter", reference.filter_rate()),
-    ] {
-        controller.set_by_name(name, value)?;
+    let mut control_loop = packages.connect(&plant, &controller, sample_time)?;
+    control_loop.add_offset("voltage", draw.voltage_offset)?;
+    control_loop.record(&[
+        ("plant", "position"),
+        ("plant", "flux"),
+        ("plant", "contact"),
+        ("controller", "reference.position"),
+        ("controller", "estimate.flux"),
+    ])?;
+    // The last row, at the end, belongs to a step that begins there.
+    let rows = (DURATION / sample_time).round() as usize + 1;
+    control_loop.initialise(0.0, Some(rows as f64 * sample_time), sample_time)?;
+    let wanted = control_loop.controller().variable("reference")?;
+    let mut trace = control_loop.empty_trace();
+    let touches = |trace: &Trace| {
+        let contacts = trace.column("plant.contact").unwrap_or_default();
+        contacts.iter().rev().take(STEPS_BETWEEN_LOOKS).any(|contact| *contact != 0.0)
+    };
+    while trace.len() < rows && !touches(&trace) {
+        let steps = STEPS_BETWEEN_LOOKS.min(rows - trace.len());
+        control_loop
+            .run_into(&mut trace, steps, |time, controller, _| controller.set(wanted, reference.at(time)))?;
     }
-    plant.initialise(0.0, Some(DURATION))?;
-    controller.initialise(0.0, Some(DURATION))?;
-
-    let sensed = references(&plant, ["current_measured", "position", "flux"])?;
-    let driven = references(&plant, ["voltage"])?;
-    let contact = plant.variable("contact")?;
-    let heard = references(&controller, ["current", "reference"])?;
-    let told = references(&controller, ["voltage", "reference.position", "estimate.flux"])?;
-    let (mut plant_values, mut controller_values) = ([0.0; 3], [0.0; 3]);
-    let (mut position_squares, mut flux_squares, mut scored) = (0.0, 0.0, 0.0);
-    let steps = (DURATION / sample_time).round() as u32;
-    for step in 0..steps {
-        let time = f64::from(step) * sample_time;
-        plant.get_reals(&sensed, &mut plant_values)?;
-        let [current, position, flux] = plant_values;
-        controller.set_reals(&heard, &[current, reference.at(time)])?;
-        controller.step(time, sample_time)?;
-        controller.get_reals(&told, &mut controller_values)?;
-        let [voltage, wanted, estimate] = controller_values;
-        if time >= SCORED_FROM - 0.5 * sample_time {
-            position_squares += (position - wanted) * (position - wanted);
-            flux_squares += (estimate - flux) * (estimate - flux);
-            scored += 1.0;
-        }
-        plant.set_reals(&driven, &[voltage + draw.voltage_offset])?;
-        plant.step(time, sample_time)?;
-        if plant.get(contact)? != 0.0 {
-            return Ok(Outcome::Lost { time: time + sample_time });
-        }
+    let run = Run::from(trace);
+    if let Some(time) = run.lost_at {
+        return Ok(Outcome::Lost { time });
     }
+    let deviation = difference(run.state("position"), &run["controller.reference.position"]);
+    let scored = |errors: &[f64]| root_mean_square(run.since(SCORED_FROM, &errors[..rows - 1]));
     Ok(Outcome::Survived {
-        position: f64::sqrt(position_squares / scored),
-        flux: f64::sqrt(flux_squares / scored) / believed.equilibrium_flux(),
+        position: scored(&deviation),
+        flux: scored(&run.error("flux")) / believed.equilibrium_flux(),
     })
 }

@@ -1,15 +1,12 @@
 //! DREM at its best: which gain, filters and normalisation serve it under noise.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-
-use rayon::prelude::*;
-
 use super::campaign::REFERENCES;
 use super::contender::{Contender, DremSetting};
 use super::spread::Draw;
 use super::trial::{self, Outcome};
 use crate::signal::BallReference;
 use crate::study::loop_packages::LoopPackages;
+use crate::study::sweep::{indices, sweep};
 use crate::study::{Progress, StudyError};
 
 /// Standard deviations of the current sensor \[A\].
@@ -53,20 +50,10 @@ impl Tuning {
         let mut contenders: Vec<Contender> =
             settings.iter().map(|setting| Contender::drem("", setting)).collect();
         contenders.push(super::newton());
-        let done = AtomicUsize::new(0);
-        let cases: Vec<(usize, usize, usize)> = (0..REFERENCES.len())
-            .flat_map(|reference| (0..NOISES.len()).map(move |noise| (reference, noise)))
-            .flat_map(|(reference, noise)| (0..contenders.len()).map(move |who| (reference, noise, who)))
-            .collect();
-        let scores = cases
-            .par_iter()
-            .map(|&(reference, noise, who)| {
-                let score = score(packages, &contenders[who], REFERENCES[reference], NOISES[noise])?;
-                let count = done.fetch_add(1, Ordering::Relaxed) + 1;
-                progress(count as f64 / cases.len() as f64, "ball-monte-carlo: tuning DREM");
-                Ok(score)
-            })
-            .collect::<Result<Vec<Score>, StudyError>>()?;
+        let cases = indices([REFERENCES.len(), NOISES.len(), contenders.len()]);
+        let scores = sweep(&cases, progress, "ball-monte-carlo: tuning DREM", |&[reference, noise, who]| {
+            score(packages, &contenders[who], REFERENCES[reference], NOISES[noise])
+        })?;
         let rows: Vec<Vec<Score>> = scores.chunks(contenders.len()).map(<[Score]>::to_vec).collect();
         let mut scores: Vec<Vec<Vec<Score>>> = rows.chunks(NOISES.len()).map(<[_]>::to_vec).collect();
         let newton =
@@ -108,17 +95,14 @@ impl Score {
 }
 
 fn settings() -> Vec<DremSetting> {
-    let mut settings = Vec::new();
-    for prefilters in PREFILTERS {
-        for filters in FILTERS {
-            for gain in GAINS {
-                for normalisation in NORMALISATIONS {
-                    settings.push(DremSetting { prefilters, filters, gain, normalisation });
-                }
-            }
-        }
-    }
-    settings
+    let lengths = [PREFILTERS.len(), FILTERS.len(), GAINS.len(), NORMALISATIONS.len()];
+    let setting = |[prefilters, filters, gain, normalisation]: [usize; 4]| DremSetting {
+        prefilters: PREFILTERS[prefilters],
+        filters: FILTERS[filters],
+        gain: GAINS[gain],
+        normalisation: NORMALISATIONS[normalisation],
+    };
+    indices(lengths).into_iter().map(setting).collect()
 }
 
 fn score(
@@ -129,15 +113,7 @@ fn score(
 ) -> Result<Score, StudyError> {
     let (mut survivors, mut flux_squares, mut position_squares) = (0.0, 0.0, 0.0);
     for (seed, flux) in FLUX_OFFSETS.into_iter().enumerate() {
-        let draw = Draw {
-            resistance: 0.0,
-            inductance_constant: 0.0,
-            mass: 0.0,
-            voltage_offset: 0.0,
-            noise,
-            flux,
-            seed: seed as i32,
-        };
+        let draw = Draw { noise, flux, seed: seed as i32, ..Draw::default() };
         if let Outcome::Survived { position, flux } = trial::run(packages, contender, reference, &draw)? {
             survivors += 1.0;
             flux_squares += flux * flux;

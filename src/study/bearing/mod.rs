@@ -5,14 +5,13 @@ mod figures;
 mod scenario;
 
 use std::path::Path;
-use std::sync::atomic::{AtomicUsize, Ordering};
-
-use rayon::prelude::*;
 
 use super::loop_packages::LoopPackages;
+use super::run::Run;
+use super::sweep::{indices, part, sweep};
 use super::{Findings, Progress, StudyError};
 use crate::unit::system::BEARING;
-use scenario::{Feedback, Run, Scenario, simulate};
+use scenario::{Scenario, simulate};
 
 /// Simulation time of Table 1 \[s\].
 const SIMULATION_TIME: f64 = 10.0;
@@ -27,20 +26,21 @@ const LAWS: [&str; 3] = ["a", "b", "c"];
 const BIAS_FLUXES: [f64; 3] = [0.0, 100e-6, 1000e-6];
 
 const PROVENANCE: &[&str] = &[
-    "Source: A. Mystkowski, Ü. Kotta, V. Kaparin, Newton observer for a nonlinear flux-controlled AMB system, \
-     Proc. Estonian Acad. Sci. 67(1), 61-72, 2018. Printed there: the plant (3), its discrete-time model (4), the \
-     observer, the laws (8) and Table 1. The paper's pictures were not at hand; the figures here follow its captions \
-     and its text.",
-    "Chosen here where the paper is silent: figures 4 to 6 start from x1(0) = 0.01 m, and figures 2, 3, 5 and 6 from \
-     u(0) = -150 V; until two past samples exist the estimate is the measured position with the observer's initial \
-     velocity and flux. The plant is solved exactly; the observer inverts the model (4a) as printed, d = 10.",
+    "Source: A. Mystkowski, Ü. Kotta, V. Kaparin, Newton observer for a nonlinear flux-controlled \
+             AMB system, Proc. Estonian Acad. Sci. 67(1), 61-72, 2018. Printed there: the plant (3), its \
+             discrete-time model (4), the observer, the laws (8) and Table 1. The paper's pictures were \
+             not at hand; the figures here follow its captions and its text.",
+    "Chosen here where the paper is silent: figures 4 to 6 start from x1(0) = 0.01 m, and figures \
+             2, 3, 5 and 6 from u(0) = -150 V; until two past samples exist the estimate is the measured \
+             position with the observer's initial velocity and flux. The plant is solved exactly; the \
+             observer inverts the model (4a) as printed, d = 10.",
 ];
 
 /// Runs everything through the packages in `packages`.
 pub fn run(packages: &Path, progress: Progress<'_>) -> Result<Findings, StudyError> {
     progress(0.0, "bearing: opening the packages");
     let packages = LoopPackages::open(packages, &BEARING)?;
-    let runs = Runs::simulate(&packages, progress)?;
+    let runs = Runs::simulate(&packages, &part(progress, 0.0, 0.9))?;
     Ok(Findings {
         name: "bearing",
         title: "Newton observer for a flux-controlled magnetic bearing",
@@ -66,32 +66,21 @@ struct Runs {
 
 impl Runs {
     fn simulate(packages: &LoopPackages, progress: Progress<'_>) -> Result<Self, StudyError> {
-        let mut scenarios = Vec::new();
-        for law in LAWS {
-            for position in POSITIONS {
-                for voltage in VOLTAGES {
-                    scenarios.push(Scenario::new(position, voltage).law(law));
-                }
-            }
-        }
-        for position in POSITIONS {
-            for voltage in VOLTAGES {
-                scenarios.push(Scenario::new(position, voltage).feedback(Feedback::State));
-            }
-        }
-        scenarios.extend(BIAS_FLUXES.map(|bias| Scenario::new(0.01, -150.0).bias_flux(bias)));
-        scenarios.push(Scenario::new(0.01, -150.0).max_iterations(100));
+        let start = |[position, voltage]: [usize; 2]| Scenario::new(POSITIONS[position], VOLTAGES[voltage]);
+        let from_afar = Scenario::new(0.01, -150.0);
+        let grid = indices([LAWS.len(), POSITIONS.len(), VOLTAGES.len()]);
+        let mut scenarios: Vec<Scenario> = grid
+            .into_iter()
+            .map(|[law, position, voltage]| Scenario { law: LAWS[law], ..start([position, voltage]) })
+            .collect();
+        let starts = indices([POSITIONS.len(), VOLTAGES.len()]);
+        scenarios.extend(starts.into_iter().map(|indices| Scenario { feedback: "state", ..start(indices) }));
+        scenarios.extend(BIAS_FLUXES.map(|bias_flux| Scenario { bias_flux, ..from_afar }));
+        scenarios.push(Scenario { max_iterations: 100, ..from_afar });
 
-        let done = AtomicUsize::new(0);
-        let mut runs = scenarios
-            .par_iter()
-            .map(|scenario| {
-                let run = simulate(packages, scenario, SIMULATION_TIME)?;
-                let count = done.fetch_add(1, Ordering::Relaxed) + 1;
-                progress(0.9 * count as f64 / scenarios.len() as f64, "bearing: simulating");
-                Ok(run)
-            })
-            .collect::<Result<Vec<Run>, StudyError>>()?;
+        let mut runs = sweep(&scenarios, progress, "bearing: simulating", |scenario| {
+            simulate(packages, scenario, SIMULATION_TIME)
+        })?;
         let many_iterations = runs.split_off(39).remove(0);
         let biased = runs.split_off(36);
         let state_feedback = runs.split_off(27);

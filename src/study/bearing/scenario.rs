@@ -4,13 +4,8 @@ use super::SAMPLE_TIME;
 use crate::host::Value;
 use crate::study::StudyError;
 use crate::study::loop_packages::LoopPackages;
-
-/// What the law is fed with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Feedback {
-    Estimate,
-    State,
-}
+use crate::study::metrics::peak;
+use crate::study::run::Run;
 
 /// Parameters of a run; everything else keeps its start value.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,9 +14,10 @@ pub struct Scenario {
     pub initial_position: f64,
     /// u(0) \[V\]
     pub initial_voltage: f64,
-    /// Item of the enumeration `controller.law`.
+    /// Item of `controller.law`.
     pub law: &'static str,
-    pub feedback: Feedback,
+    /// Item of `controller.feedback`.
+    pub feedback: &'static str,
     /// Phi0 \[Wb\] of plant and controller.
     pub bias_flux: f64,
     /// d
@@ -35,84 +31,24 @@ impl Scenario {
             initial_position,
             initial_voltage,
             law: "a",
-            feedback: Feedback::Estimate,
+            feedback: "estimate",
             bias_flux: 0.0,
             max_iterations: 10,
         }
     }
-
-    pub fn law(self, law: &'static str) -> Self {
-        Self { law, ..self }
-    }
-
-    pub fn feedback(self, feedback: Feedback) -> Self {
-        Self { feedback, ..self }
-    }
-
-    pub fn bias_flux(self, bias_flux: f64) -> Self {
-        Self { bias_flux, ..self }
-    }
-
-    pub fn max_iterations(self, max_iterations: i32) -> Self {
-        Self { max_iterations, ..self }
-    }
 }
 
-/// Samples of a run, one per tick; states in the order position \[m\], velocity \[m/s\], flux \[Wb\].
-pub struct Run {
-    /// \[s\]
-    pub time: Vec<f64>,
-    pub state: [Vec<f64>; 3],
-    pub estimate: [Vec<f64>; 3],
-    /// \[V\]
-    pub voltage: Vec<f64>,
+/// Position \[m\], velocity \[m/s\], flux \[Wb\]: columns `plant.<state>` and `controller.estimate.<state>`.
+pub const STATES: [&str; 3] = ["position", "velocity", "flux"];
+
+/// Largest magnitude of a state's estimation error from `start` \[s\] on.
+pub fn largest_error(run: &Run, start: f64, state: &str) -> f64 {
+    peak(run.since(start, &run.error(state)))
 }
-
-impl Run {
-    /// Estimate minus truth of one state, sample by sample.
-    pub fn error(&self, state: usize) -> impl Iterator<Item = f64> + '_ {
-        self.estimate[state].iter().zip(&self.state[state]).map(|(estimate, truth)| estimate - truth)
-    }
-
-    /// Largest magnitude of one state.
-    pub fn peak(&self, state: usize) -> f64 {
-        largest(self.state[state].iter().copied())
-    }
-
-    /// Largest magnitude of one state's estimation error from `start` \[s\] on.
-    pub fn largest_error_after(&self, start: f64, state: usize) -> f64 {
-        largest(
-            self.time
-                .iter()
-                .zip(self.error(state))
-                .filter(|(time, _)| **time >= start)
-                .map(|(_, error)| error),
-        )
-    }
-}
-
-/// Largest magnitude.
-pub fn largest(values: impl Iterator<Item = f64>) -> f64 {
-    values.fold(0.0, |peak, value| peak.max(value.abs()))
-}
-
-const RECORDED: [(&str, &str); 7] = [
-    ("plant", "position"),
-    ("plant", "velocity"),
-    ("plant", "flux"),
-    ("controller", "estimate.position"),
-    ("controller", "estimate.velocity"),
-    ("controller", "estimate.flux"),
-    ("controller", "voltage"),
-];
 
 /// Runs a scenario for `duration` \[s\].
 pub fn simulate(packages: &LoopPackages, scenario: &Scenario, duration: f64) -> Result<Run, StudyError> {
-    let feedback = match scenario.feedback {
-        Feedback::Estimate => "estimate",
-        Feedback::State => "state",
-    };
-    let trace = packages.simulate(
+    packages.simulate(
         &[
             ("initial.position", Value::Real(scenario.initial_position)),
             ("bias_flux", Value::Real(scenario.bias_flux)),
@@ -120,20 +56,20 @@ pub fn simulate(packages: &LoopPackages, scenario: &Scenario, duration: f64) -> 
         &[
             ("controller.initial_voltage", Value::Real(scenario.initial_voltage)),
             ("controller.law", Value::Text(scenario.law)),
-            ("controller.feedback", Value::Text(feedback)),
+            ("controller.feedback", Value::Text(scenario.feedback)),
             ("observer.max_iterations", Value::Integer(scenario.max_iterations)),
             ("bias_flux", Value::Real(scenario.bias_flux)),
         ],
-        &RECORDED,
+        &[
+            ("plant", "position"),
+            ("plant", "velocity"),
+            ("plant", "flux"),
+            ("controller", "estimate.position"),
+            ("controller", "estimate.velocity"),
+            ("controller", "estimate.flux"),
+            ("controller", "voltage"),
+        ],
         SAMPLE_TIME,
         duration,
-    )?;
-    let mut columns = trace.columns.into_iter();
-    let mut next = || columns.next().unwrap_or_default();
-    Ok(Run {
-        time: trace.time,
-        state: [next(), next(), next()],
-        estimate: [next(), next(), next()],
-        voltage: next(),
-    })
+    )
 }

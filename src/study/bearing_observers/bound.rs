@@ -2,10 +2,10 @@
 //! on the flux alone, it is the Kalman covariance with the Jacobians along the true trajectory.
 
 use super::SCORED_FROM;
-use crate::host::Trace;
 use crate::observer::factored_covariance::FactoredCovariance;
 use crate::observer::kalman::INITIAL_VARIANCES;
 use crate::plant::magnetic_bearing::{MagneticBearing, Map};
+use crate::study::run::Run;
 
 /// Smallest possible root mean square errors of an unbiased observer over the scored part of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,13 +17,12 @@ pub struct Bound {
 }
 
 /// The bound for a sensor of `noise` \[m\] along the trajectory of a run without process noise.
-pub fn cramer_rao(trace: &Trace, sample_time: f64, noise: f64) -> Bound {
+pub fn cramer_rao(run: &Run, sample_time: f64, noise: f64) -> Bound {
     let bearing = MagneticBearing { epsilon: 0.0 };
     let mut covariance = FactoredCovariance::diagonal(INITIAL_VARIANCES);
     let (mut velocity, mut flux, mut count) = (0.0, 0.0, 0.0);
-    let columns = trace.column("plant.flux").unwrap_or_default().iter();
-    let samples = columns.zip(trace.column("controller.voltage").unwrap_or_default());
-    for (time, (true_flux, voltage)) in trace.time.iter().zip(samples) {
+    let samples = run.state("flux").iter().zip(&run["controller.voltage"]);
+    for (time, (true_flux, voltage)) in run.time.iter().zip(samples) {
         if noise > 0.0 {
             covariance.measure_position(noise * noise);
         }
@@ -50,12 +49,12 @@ mod tests {
     use super::*;
 
     /// The same bound from the information matrix itself, in the textbook form.
-    fn by_information(trace: &Trace, sample_time: f64, noise: f64) -> Bound {
+    fn by_information(run: &Run, sample_time: f64, noise: f64) -> Bound {
         let bearing = MagneticBearing { epsilon: 0.0 };
         let mut information =
             Matrix3::from_diagonal(&Vector3::from(INITIAL_VARIANCES.map(|variance| 1.0 / variance)));
         let (mut velocity, mut flux, mut count) = (0.0, 0.0, 0.0);
-        for (row, time) in trace.time.iter().enumerate() {
+        for (row, time) in run.time.iter().enumerate() {
             information[(0, 0)] += 1.0 / (noise * noise);
             if *time >= SCORED_FROM {
                 let covariance = information.try_inverse().unwrap();
@@ -63,7 +62,7 @@ mod tests {
                 flux += covariance[(2, 2)];
                 count += 1.0;
             }
-            let (flux, voltage) = (trace.columns[0][row], trace.columns[1][row]);
+            let (flux, voltage) = (run.state("flux")[row], run["controller.voltage"][row]);
             let back = bearing.jacobian(Map::Exact, flux, voltage, sample_time).try_inverse().unwrap();
             information = back.transpose() * information * back;
         }
@@ -76,18 +75,13 @@ mod tests {
         let time: Vec<f64> = (0..200).map(|k| f64::from(k) * sample_time).collect();
         let voltage: Vec<f64> = time.iter().map(|t| 2.0 * (7.0 * t).cos()).collect();
         let flux = time.iter().map(|t| 0.1 + 2.0 / 7.0 * (7.0 * t).sin()).collect();
-        let trace = Trace {
-            names: vec!["plant.flux".to_owned(), "controller.voltage".to_owned()],
-            units: vec![None, None],
-            time,
-            columns: vec![flux, voltage],
-        };
+        let run = Run::new(time).with("plant.flux", flux).with("controller.voltage", voltage);
         // A noise at which the information matrix is still well conditioned.
         let (noise, relative) = (1e-3, |a: f64, b: f64| (a / b - 1.0).abs());
         let (bound, reference) =
-            (cramer_rao(&trace, sample_time, noise), by_information(&trace, sample_time, noise));
+            (cramer_rao(&run, sample_time, noise), by_information(&run, sample_time, noise));
         assert!(relative(bound.flux, reference.flux) < 1e-9, "{bound:?} {reference:?}");
         assert!(relative(bound.velocity, reference.velocity) < 1e-9, "{bound:?} {reference:?}");
-        assert_eq!(cramer_rao(&trace, sample_time, 0.0), Bound { velocity: 0.0, flux: 0.0 });
+        assert_eq!(cramer_rao(&run, sample_time, 0.0), Bound { velocity: 0.0, flux: 0.0 });
     }
 }

@@ -1,16 +1,14 @@
 //! All observers under all conditions.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-
-use rayon::prelude::*;
-
 use super::bound::{Bound, cramer_rao};
 use super::contenders::{CONTENDERS, Conditions, rms_error, simulate, stayed_up};
 use super::{NOISES, SAMPLE_TIMES, seeds};
 use crate::study::loop_packages::LoopPackages;
+use crate::study::metrics::{indicator, root_mean_square};
+use crate::study::sweep::{indices, sweep};
 use crate::study::{Progress, StudyError};
 
-/// One observer under one sample time and noise, over all seeds.
+/// One observer under one sample time and noise, with one seed or over all.
 #[derive(Clone, Copy, Debug)]
 pub struct Score {
     /// Root mean square errors \[m/s\], \[Wb\].
@@ -28,45 +26,22 @@ pub struct Comparison {
     pub bounds: Vec<Vec<Bound>>,
 }
 
-/// Sums over the seeds done so far.
-#[derive(Clone, Copy, Default)]
-struct Sums {
-    velocity_square: f64,
-    flux_square: f64,
-    survivors: f64,
-    runs: f64,
-}
-
 impl Comparison {
     pub fn simulate(packages: &LoopPackages, progress: Progress<'_>) -> Result<Self, StudyError> {
-        let cases: Vec<(usize, usize, usize, i32)> = (0..SAMPLE_TIMES.len())
-            .flat_map(|time| (0..seeds(SAMPLE_TIMES[time])).map(move |seed| (time, seed)))
-            .flat_map(|(time, seed)| (0..NOISES.len()).map(move |noise| (time, noise, seed)))
-            .flat_map(|(time, noise, seed)| (0..CONTENDERS.len()).map(move |who| (time, noise, who, seed)))
-            .collect();
-        let done = AtomicUsize::new(0);
-        let outcomes = cases
-            .par_iter()
-            .map(|&(time, noise, who, seed)| {
-                let outcome = score(packages, SAMPLE_TIMES[time], NOISES[noise], who, seed)?;
-                let count = done.fetch_add(1, Ordering::Relaxed) + 1;
-                progress(0.95 * count as f64 / cases.len() as f64, "bearing-observers: comparing observers");
-                Ok(outcome)
-            })
-            .collect::<Result<Vec<Sums>, StudyError>>()?;
-
-        let mut sums = vec![vec![vec![Sums::default(); CONTENDERS.len()]; NOISES.len()]; SAMPLE_TIMES.len()];
-        for (&(time, noise, who, _), outcome) in cases.iter().zip(&outcomes) {
-            let sum = &mut sums[time][noise][who];
-            sum.velocity_square += outcome.velocity_square;
-            sum.flux_square += outcome.flux_square;
-            sum.survivors += outcome.survivors;
-            sum.runs += 1.0;
+        let conditions = indices([SAMPLE_TIMES.len(), NOISES.len(), CONTENDERS.len()]);
+        let with_seeds = |case: [usize; 3]| (0..seeds(SAMPLE_TIMES[case[0]])).map(move |seed| (case, seed));
+        let cases: Vec<_> = conditions.iter().flat_map(|case| with_seeds(*case)).collect();
+        let action = "bearing-observers: comparing observers";
+        let outcomes = sweep(&cases, progress, action, |([time, noise, who], seed)| {
+            score(packages, SAMPLE_TIMES[*time], NOISES[*noise], *who, *seed)
+        })?;
+        let mut outcomes = outcomes.as_slice();
+        let mut scores = vec![vec![Vec::new(); NOISES.len()]; SAMPLE_TIMES.len()];
+        for [time, noise, _] in conditions {
+            let (of_case, others) = outcomes.split_at(seeds(SAMPLE_TIMES[time]) as usize);
+            scores[time][noise].push(Score::over(of_case));
+            outcomes = others;
         }
-        let scores = sums
-            .iter()
-            .map(|noises| noises.iter().map(|row| row.iter().map(Sums::score).collect()).collect())
-            .collect();
         let bounds = SAMPLE_TIMES
             .iter()
             .map(|sample_time| NOISES.iter().map(|noise| bound(packages, *sample_time, *noise)).collect())
@@ -75,12 +50,13 @@ impl Comparison {
     }
 }
 
-impl Sums {
-    fn score(&self) -> Score {
-        Score {
-            velocity: (self.velocity_square / self.runs).sqrt(),
-            flux: (self.flux_square / self.runs).sqrt(),
-            survival: self.survivors / self.runs,
+impl Score {
+    /// Of all seeds.
+    fn over(seeds: &[Self]) -> Self {
+        Self {
+            velocity: root_mean_square(seeds.iter().map(|score| score.velocity)),
+            flux: root_mean_square(seeds.iter().map(|score| score.flux)),
+            survival: seeds.iter().map(|score| score.survival).sum::<f64>() / seeds.len() as f64,
         }
     }
 }
@@ -92,24 +68,19 @@ fn score(
     noise: f64,
     who: usize,
     seed: i32,
-) -> Result<Sums, StudyError> {
+) -> Result<Score, StudyError> {
     let parameters = CONTENDERS[who].parameters(noise);
-    let observed =
-        simulate(packages, Conditions { sample_time, noise, seed, feedback: "state" }, &parameters)?;
-    let in_loop =
-        simulate(packages, Conditions { sample_time, noise, seed, feedback: "estimate" }, &parameters)?;
-    let velocity = rms_error(&observed, "plant.velocity", "controller.estimate.velocity");
-    let flux = rms_error(&observed, "plant.flux", "controller.estimate.flux");
-    Ok(Sums {
-        velocity_square: velocity * velocity,
-        flux_square: flux * flux,
-        survivors: f64::from(u8::from(stayed_up(&in_loop))),
-        runs: 1.0,
+    let run = |feedback| simulate(packages, Conditions { sample_time, noise, seed, feedback }, &parameters);
+    let (observed, in_loop) = (run("state")?, run("estimate")?);
+    Ok(Score {
+        velocity: rms_error(&observed, "velocity"),
+        flux: rms_error(&observed, "flux"),
+        survival: indicator(stayed_up(&in_loop)),
     })
 }
 
 /// The bound along the trajectory of the first seed; trajectories of other seeds hardly differ.
 fn bound(packages: &LoopPackages, sample_time: f64, noise: f64) -> Result<Bound, StudyError> {
-    let trace = simulate(packages, Conditions { sample_time, noise, seed: 0, feedback: "state" }, &[])?;
-    Ok(cramer_rao(&trace, sample_time, noise))
+    let run = simulate(packages, Conditions { sample_time, noise, seed: 0, feedback: "state" }, &[])?;
+    Ok(cramer_rao(&run, sample_time, noise))
 }

@@ -1,9 +1,11 @@
 //! The observers that are compared, and one run of the loop with one of them.
 
 use super::{DURATION, INITIAL_FLUX, LOST_BEYOND, SCORED_FROM};
-use crate::host::{Trace, Value};
+use crate::host::Value;
 use crate::study::StudyError;
 use crate::study::loop_packages::{LoopPackages, Parameter};
+use crate::study::metrics::root_mean_square;
+use crate::study::run::Run;
 
 /// An observer with its parameters of the controller unit.
 pub struct Contender {
@@ -65,7 +67,7 @@ pub fn simulate(
     packages: &LoopPackages,
     conditions: Conditions,
     parameters: &[Parameter<'_>],
-) -> Result<Trace, StudyError> {
+) -> Result<Run, StudyError> {
     let Conditions { sample_time, noise, seed, feedback } = conditions;
     let mut controller = vec![
         ("controller.initial_voltage", Value::Real(0.0)),
@@ -104,19 +106,12 @@ impl Contender {
     }
 }
 
-/// Root mean square of `estimate - truth` over the scored part of a run.
-pub fn rms_error(trace: &Trace, truth: &str, estimate: &str) -> f64 {
-    let (Some(truth), Some(estimate)) = (trace.column(truth), trace.column(estimate)) else {
-        return f64::NAN;
-    };
-    let scored = trace.time.iter().zip(estimate.iter().zip(truth)).filter(|(time, _)| **time >= SCORED_FROM);
-    let (sum, count) = scored.fold((0.0, 0.0), |(sum, count), (_, (estimate, truth))| {
-        (sum + (estimate - truth) * (estimate - truth), count + 1.0)
-    });
-    (sum / count).sqrt()
+/// Root mean square error of the estimate of a state over the scored part of a run.
+pub fn rms_error(run: &Run, state: &str) -> f64 {
+    root_mean_square(run.since(SCORED_FROM, &run.error(state)))
 }
 
 /// Whether the rotor stayed near the centre all the time.
-pub fn stayed_up(trace: &Trace) -> bool {
-    trace.column("plant.position").is_some_and(|position| position.iter().all(|x| x.abs() <= LOST_BEYOND))
+pub fn stayed_up(run: &Run) -> bool {
+    run.state("position").iter().all(|position| position.abs() <= LOST_BEYOND)
 }

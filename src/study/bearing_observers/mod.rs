@@ -10,6 +10,7 @@ mod settling;
 use std::path::Path;
 
 use super::loop_packages::LoopPackages;
+use super::sweep::part;
 use super::{Findings, Progress, StudyError};
 use crate::unit::system::BEARING;
 use comparison::Comparison;
@@ -32,19 +33,20 @@ fn seeds(sample_time: f64) -> i32 {
 }
 
 const PROVENANCE: &[&str] = &[
-    "From the paper: the full-order Newton observer, its reduced-order form (section 3.1) and, by a footnote, windows of \
-     more than three samples. Not from the paper: the exact model inside the observer, the compensation of the reduced \
-     observer's lag, the Kalman filter and the flux cascade. The paper shows no run with noise and none of the reduced observer.",
-    "Law (8a), x1(0) = 0.01 m, flux -0.15 Wb at the start, no bias. Errors are scored after 0.5 s with the true state fed \
-     back, so that every observer sees the same data; whether the loop stays up is judged with the estimate fed back. \
-     The bound is the posterior Cramer-Rao bound of the same model with the Kalman filter's prior, along the true \
-     trajectory.",
+    "From the paper: the full-order Newton observer, its reduced-order form (section 3.1) and, by a \
+     footnote, windows of more than three samples. Not from the paper: the exact model inside the observer, \
+     the compensation of the reduced observer's lag, the Kalman filter and the flux cascade. The paper \
+     shows no run with noise and none of the reduced observer.",
+    "Law (8a), x1(0) = 0.01 m, flux -0.15 Wb at the start, no bias. Errors are scored after 0.5 s with the \
+     true state fed back, so that every observer sees the same data; whether the loop stays up is judged \
+     with the estimate fed back. The bound is the posterior Cramer-Rao bound of the same model with the \
+     Kalman filter's prior, along the true trajectory.",
 ];
 
 /// Runs everything through the packages in `packages`.
 pub fn run(packages: &Path, progress: Progress<'_>) -> Result<Findings, StudyError> {
     let packages = LoopPackages::open(packages, &BEARING)?;
-    let comparison = Comparison::simulate(&packages, progress)?;
+    let comparison = Comparison::simulate(&packages, &part(progress, 0.0, 0.95))?;
     progress(0.97, "bearing-observers: laws that settle");
     let (settling_figure, settling_table) = settling::compare(&packages)?;
     let mut figures = presentation::figures(&comparison);

@@ -3,8 +3,10 @@
 use super::comparison::{Comparison, Score};
 use super::contenders::CONTENDERS;
 use super::{NOISES, SAMPLE_TIMES, seeds};
-use crate::study::chart::{Figure, Panel, Series, Stroke};
+use crate::chart::Panel;
+use crate::study::metrics::largest;
 use crate::study::report::quantity;
+use crate::study::sweep::indices;
 use crate::study::{FigureWithData, Summary, Table};
 
 /// Sample time of the paper, by its index.
@@ -21,35 +23,21 @@ pub fn index_of(name: &str) -> usize {
 }
 
 pub fn figures(comparison: &Comparison) -> Vec<FigureWithData> {
-    let mut panels = Vec::new();
-    for (flux, title) in [(true, "flux"), (false, "velocity")] {
-        for (time, sample_time) in SAMPLE_TIMES.iter().enumerate() {
-            panels.push(error_panel(
-                comparison,
-                time,
-                flux,
-                &format!("{title}, T = {} ms", 1e3 * sample_time),
-            ));
-        }
-    }
-    for (time, sample_time) in SAMPLE_TIMES.iter().enumerate() {
-        panels.push(survival_panel(
-            comparison,
-            time,
-            &format!("loop stays up, T = {} ms", 1e3 * sample_time),
-        ));
-    }
-    let figure = Figure {
-        title: "Observers of the magnetic bearing under sensor noise".to_owned(),
-        caption: "Root mean square errors of flux and velocity over the sensor's noise for three sample times, all \
-                  observers on the same data, with the Cramer-Rao bound; and the share of runs in which the loop on \
-                  estimates stays up. Without noise see the tables. Over few seeds an error may come out below the \
-                  bound, which holds for the average over all."
-            .to_owned(),
-        columns: 3,
-        panels,
-    };
-    vec![FigureWithData { name: "bearing_observers".to_owned(), figure, table: data(comparison) }]
+    let of = |time: usize, what: &str| format!("{what}, T = {} ms", 1e3 * SAMPLE_TIMES[time]);
+    let panels = (0..3)
+        .map(|time| error_panel(comparison, time, true, &of(time, "flux")))
+        .chain((0..3).map(|time| error_panel(comparison, time, false, &of(time, "velocity"))))
+        .chain((0..3).map(|time| survival_panel(comparison, time, &of(time, "loop stays up"))));
+    let title = "Observers of the magnetic bearing under sensor noise";
+    let figure = FigureWithData::new("bearing_observers", title, data(comparison))
+        .caption(
+            "Root mean square errors of flux and velocity over the sensor's noise for three sample times, \
+             all observers on the same data, with the Cramer-Rao bound; and the share of runs in which the \
+             loop on estimates stays up. Without noise see the tables. Over few seeds an error may come out \
+             below the bound, which holds for the average over all.",
+        )
+        .panels(3, panels);
+    vec![figure]
 }
 
 fn error_panel(comparison: &Comparison, time: usize, flux: bool, title: &str) -> Panel {
@@ -63,7 +51,7 @@ fn error_panel(comparison: &Comparison, time: usize, flux: bool, title: &str) ->
         .iter()
         .zip(&comparison.bounds[time])
         .map(|(noise, bound)| (*noise, if flux { bound.flux } else { bound.velocity }));
-    contenders(panel, comparison, time, false, value).with(Series::new("", BOUND, Stroke::Dashed, bounds))
+    contenders(panel, comparison, time, false, value).dashed("", BOUND, bounds)
 }
 
 /// Also carries the legend, since its lower half is empty where the loops stay up.
@@ -72,7 +60,7 @@ fn survival_panel(comparison: &Comparison, time: usize, title: &str) -> Panel {
     let panel = contenders(panel, comparison, time, time == 0, |score| 100.0 * score.survival);
     let label = if time == 0 { "Cramer-Rao bound" } else { "" };
     // A line of the legend that has no points here.
-    panel.with(Series::new(label, BOUND, Stroke::Dashed, []))
+    panel.dashed(label, BOUND, [])
 }
 
 /// A line per observer.
@@ -87,34 +75,27 @@ fn contenders(
         let points =
             NOISES.iter().zip(&comparison.scores[time]).map(|(noise, row)| (*noise, value(&row[who])));
         let label = if with_legend { contender.name } else { "" };
-        panel.with(Series::new(label, who, Stroke::Solid, points))
+        panel.line(label, who, points)
     })
 }
 
 /// A row per sample time and noise, three columns per observer.
 fn data(comparison: &Comparison) -> Table {
-    let cases: Vec<(usize, usize)> =
-        (0..SAMPLE_TIMES.len()).flat_map(|time| (0..NOISES.len()).map(move |noise| (time, noise))).collect();
     let mut table = Table::default();
+    let cases = indices([SAMPLE_TIMES.len(), NOISES.len()]);
     let mut add = |header: String, value: &dyn Fn(usize, usize) -> f64| {
-        table.headers.push(header);
-        table.columns.push(cases.iter().map(|&(time, noise)| value(time, noise)).collect());
+        table.add(header, cases.iter().map(|&[time, noise]| value(time, noise)));
     };
+    let Comparison { scores, bounds } = comparison;
     add("sample time [s]".to_owned(), &|time, _| SAMPLE_TIMES[time]);
     add("sensor noise [m]".to_owned(), &|_, noise| NOISES[noise]);
-    add("Cramer-Rao bound of velocity [m/s]".to_owned(), &|time, noise| {
-        comparison.bounds[time][noise].velocity
-    });
-    add("Cramer-Rao bound of flux [Wb]".to_owned(), &|time, noise| comparison.bounds[time][noise].flux);
+    add("Cramer-Rao bound of velocity [m/s]".to_owned(), &|time, noise| bounds[time][noise].velocity);
+    add("Cramer-Rao bound of flux [Wb]".to_owned(), &|time, noise| bounds[time][noise].flux);
     for (who, contender) in CONTENDERS.iter().enumerate() {
         let name = contender.name.replace(',', "");
-        add(format!("{name}: rms velocity error [m/s]"), &|time, noise| {
-            comparison.scores[time][noise][who].velocity
-        });
-        add(format!("{name}: rms flux error [Wb]"), &|time, noise| comparison.scores[time][noise][who].flux);
-        add(format!("{name}: share of runs up [1]"), &|time, noise| {
-            comparison.scores[time][noise][who].survival
-        });
+        add(format!("{name}: rms velocity error [m/s]"), &|time, noise| scores[time][noise][who].velocity);
+        add(format!("{name}: rms flux error [Wb]"), &|time, noise| scores[time][noise][who].flux);
+        add(format!("{name}: share of runs up [1]"), &|time, noise| scores[time][noise][who].survival);
     }
     table
 }
@@ -124,9 +105,7 @@ pub fn tables(comparison: &Comparison) -> Vec<Summary> {
         .iter()
         .enumerate()
         .map(|(time, sample_time)| {
-            let headers = std::iter::once("observer".to_owned())
-                .chain(NOISES.iter().map(|noise| format!("noise {}", quantity(*noise, "m"))))
-                .collect();
+            let noises = NOISES.map(|noise| format!("noise {}", quantity(noise, "m")));
             let mut rows: Vec<Vec<String>> = CONTENDERS
                 .iter()
                 .enumerate()
@@ -147,15 +126,12 @@ pub fn tables(comparison: &Comparison) -> Vec<Summary> {
                 .iter()
                 .map(|bound| format!("{:.1e} Wb, {:.1e} m/s", bound.flux, bound.velocity));
             rows.push(std::iter::once("Cramer-Rao bound".to_owned()).chain(bounds).collect());
-            Summary {
-                title: format!(
-                    "T = {} ms: rms errors of flux and velocity, share of loops that stay up ({} seeds)",
-                    1e3 * sample_time,
-                    seeds(*sample_time)
-                ),
-                headers,
-                rows,
-            }
+            let title = format!(
+                "T = {} ms: rms errors of flux and velocity, share of loops that stay up ({} seeds)",
+                1e3 * sample_time,
+                seeds(*sample_time)
+            );
+            Summary::new(title, std::iter::once("observer".to_owned()).chain(noises), rows)
         })
         .collect()
 }
@@ -192,19 +168,20 @@ pub fn advice(comparison: &Comparison) -> Vec<String> {
         || "The three-sample Newton observer stays usable at every noise tried.".to_owned(),
         |(noise, row)| {
             format!(
-                "The three-sample Newton observer is for data without noise: at {} its flux error is {:.1e} Wb, more than \
-                 a tenth of the signal.",
+                "The three-sample Newton observer is for data without noise: at {} its flux error is {:.1e} \
+                 Wb, more than a tenth of the signal.",
                 quantity(*noise, "m"),
                 row[newton].flux
             )
         },
     );
     let kalman = index_of("Kalman, default noise");
-    let worst = scores.iter().map(|row| row[kalman].flux).fold(0.0, f64::max);
+    let worst = largest(scores.iter().map(|row| row[kalman].flux));
     vec![format!(
-        "Which observer at T = 1 ms, by the smallest flux error among those that keep every loop up: {}. {usable} The \
-         Kalman filter with its default noise never does worse than {worst:.1e} Wb and is the one to start with on a real \
-         sensor; tell it the sensor's noise, and a smaller flux noise the more the model is trusted.",
+        "Which observer at T = 1 ms, by the smallest flux error among those that keep every loop up: {}. \
+         {usable} The Kalman filter with its default noise never does worse than {worst:.1e} Wb and is the \
+         one to start with on a real sensor; tell it the sensor's noise, and a smaller flux noise the more \
+         the model is trusted.",
         choices.join("; ")
     )]
 }

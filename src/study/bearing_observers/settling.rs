@@ -1,9 +1,12 @@
 //! How fast the laws bring the rotor to the centre: the printed law (8a) against the flux cascade, on estimates.
 
-use crate::host::{Trace, Value};
-use crate::study::chart::{Figure, Panel, Series, Stroke};
+use crate::chart::Panel;
+use crate::host::Value;
 use crate::study::loop_packages::{LoopPackages, Parameter};
+use crate::study::metrics::{largest, peak};
 use crate::study::report::quantity;
+use crate::study::run::Run;
+use crate::study::sweep::indices;
 use crate::study::{FigureWithData, StudyError, Summary, Table};
 
 /// Starts of Table 1: x1(0) \[m\] and u(0) \[V\].
@@ -53,103 +56,51 @@ const SETTINGS: [Setting; 4] = [
     },
 ];
 
-/// Worst figures of a setting over all starts.
-struct Outcome {
-    /// Time \[s\] from which on |x1| stays below [`SETTLED`]; infinite if it does not.
-    settling_time: f64,
-    /// Largest |x1| \[m\] in the last second.
-    rest: f64,
-    /// Largest |u| \[V\].
-    voltage: f64,
-}
-
 /// The figure and the table.
 pub fn compare(packages: &LoopPackages) -> Result<(FigureWithData, Summary), StudyError> {
     let mut position = Panel::new("position, x1(0) = 10 mm, u(0) = -150 V", "time [s]", "position x1 [mm]");
     let mut distance = Panel::new("distance from the centre", "time [s]", "|x1| [mm]").logarithmic();
     let mut voltage = Panel::new("voltage, first 0.2 s", "time [s]", "voltage u [V]").between(0.0, 0.2);
-    let mut table = Table::default();
+    let mut runs = Vec::new();
     let mut rows = Vec::new();
     for (colour, setting) in SETTINGS.iter().enumerate() {
-        let trace = simulate(packages, setting, 0.01, -150.0, 0.0)?;
-        let column = |name: &str| trace.column(name).unwrap_or_default().to_vec();
-        let (x, u) = (column("plant.position"), column("controller.voltage"));
-        let over_time = |values: &[f64], factor: f64| -> Vec<(f64, f64)> {
-            trace.time.iter().zip(values).map(|(t, value)| (*t, factor * value)).collect()
-        };
-        let magnitudes: Vec<f64> = x.iter().map(|x| x.abs()).collect();
-        position = position.with(Series::new(setting.name, colour, Stroke::Solid, over_time(&x, 1e3)));
-        distance = distance.with(Series::new("", colour, Stroke::Solid, over_time(&magnitudes, 1e3)));
-        voltage = voltage.with(Series::new("", colour, Stroke::Held, over_time(&u, 1.0)));
-        if table.columns.is_empty() {
-            table.headers.push("time [s]".to_owned());
-            table.columns.push(trace.time.clone());
-        }
-        let name = setting.name.replace(',', "");
-        table.headers.extend([format!("{name}: position [m]"), format!("{name}: voltage [V]")]);
-        table.columns.extend([x, u]);
-
-        let outcome = worst(packages, setting)?;
-        rows.push(vec![
-            setting.name.to_owned(),
-            if outcome.settling_time.is_finite() {
-                quantity(outcome.settling_time, "s")
-            } else {
-                format!("not within {DURATION} s")
-            },
-            quantity(outcome.rest, "m"),
-            quantity(outcome.voltage, "V"),
-        ]);
+        let run = simulate(packages, setting, 0.01, -150.0, 0.0)?;
+        position = position.line(setting.name, colour, run.points("plant.position", 1e3));
+        distance = distance.line("", colour, run.magnitudes(run.state("position"), 1e3, 0.0));
+        voltage = voltage.held("", colour, run.points("controller.voltage", 1.0));
+        runs.push((setting.name.replace(',', ""), run));
+        rows.push(row(packages, setting)?);
     }
-    let figure = Figure {
-        title: "A law that settles: flux cascade with feed-forward against law (8a)".to_owned(),
-        caption: "Position and voltage of the loop on estimates. The flux cascade is not from the paper."
-            .to_owned(),
-        columns: 3,
-        panels: vec![position, distance, voltage],
-    };
-    let summary = Summary {
-        title: format!(
-            "Worst of {} starts of Table 1, epsilon = 0 and 0.0909: settling to {SETTLED:e} m",
-            POSITIONS.len() * VOLTAGES.len()
-        ),
-        headers: ["law, observer, sensor", "settled from", "largest |x1| from 4 to 5 s", "largest |u|"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows,
-    };
-    Ok((FigureWithData { name: "bearing_flux_cascade".to_owned(), figure, table }, summary))
+    let runs: Vec<_> = runs.iter().map(|(name, run)| (name.clone(), run)).collect();
+    let each = [("plant.position", "position [m]"), ("controller.voltage", "voltage [V]")];
+    let title = "A law that settles: flux cascade with feed-forward against law (8a)";
+    let figure = FigureWithData::new("bearing_flux_cascade", title, Table::of_runs(&runs, &[], &each))
+        .caption("Position and voltage of the loop on estimates. The flux cascade is not from the paper.")
+        .panels(3, [position, distance, voltage]);
+    let title = format!(
+        "Worst of {} starts of Table 1, epsilon = 0 and 0.0909: settling to {SETTLED:e} m",
+        POSITIONS.len() * VOLTAGES.len()
+    );
+    let headers = ["law, observer, sensor", "settled from", "largest |x1| from 4 to 5 s", "largest |u|"];
+    Ok((figure, Summary::new(title, headers, rows)))
 }
 
-fn worst(packages: &LoopPackages, setting: &Setting) -> Result<Outcome, StudyError> {
-    let mut worst = Outcome { settling_time: 0.0, rest: 0.0, voltage: 0.0 };
-    for position in POSITIONS {
-        for voltage in VOLTAGES {
-            for bias in BIAS_FLUXES {
-                let outcome = judge(&simulate(packages, setting, position, voltage, bias)?);
-                worst.settling_time = worst.settling_time.max(outcome.settling_time);
-                worst.rest = worst.rest.max(outcome.rest);
-                worst.voltage = worst.voltage.max(outcome.voltage);
-            }
-        }
-    }
-    Ok(worst)
-}
-
-fn judge(trace: &Trace) -> Outcome {
-    let position = trace.column("plant.position").unwrap_or_default();
-    let last = position.iter().rposition(|x| x.abs() > SETTLED);
-    let settling_time = match last {
-        None => 0.0,
-        Some(last) => trace.time.get(last + 1).copied().unwrap_or(f64::INFINITY),
+/// The worst of a setting over all starts.
+fn row(packages: &LoopPackages, setting: &Setting) -> Result<Vec<String>, StudyError> {
+    let starts = indices([POSITIONS.len(), VOLTAGES.len(), BIAS_FLUXES.len()]);
+    let simulate = |[position, voltage, bias]: [usize; 3]| {
+        simulate(packages, setting, POSITIONS[position], VOLTAGES[voltage], BIAS_FLUXES[bias])
     };
-    let largest = |values: &mut dyn Iterator<Item = &f64>| values.fold(0.0, |peak: f64, x| peak.max(x.abs()));
-    let end = trace.time.iter().zip(position).filter(|(t, _)| **t >= DURATION - 1.0);
-    Outcome {
-        settling_time,
-        rest: largest(&mut end.map(|(_, x)| x)),
-        voltage: largest(&mut trace.column("controller.voltage").unwrap_or_default().iter()),
-    }
+    let runs = starts.into_iter().map(simulate).collect::<Result<Vec<Run>, StudyError>>()?;
+    let settled = largest(runs.iter().map(|run| run.settled(run.state("position"), SETTLED)));
+    let rest = largest(runs.iter().map(|run| peak(run.last(1.0, run.state("position")))));
+    let voltage = largest(runs.iter().map(|run| peak(&run["controller.voltage"])));
+    Ok(vec![
+        setting.name.to_owned(),
+        if settled.is_finite() { quantity(settled, "s") } else { format!("not within {DURATION} s") },
+        quantity(rest, "m"),
+        quantity(voltage, "V"),
+    ])
 }
 
 fn simulate(
@@ -158,7 +109,7 @@ fn simulate(
     initial_position: f64,
     initial_voltage: f64,
     bias_flux: f64,
-) -> Result<Trace, StudyError> {
+) -> Result<Run, StudyError> {
     let mut controller = vec![
         ("controller.initial_voltage", Value::Real(initial_voltage)),
         ("bias_flux", Value::Real(bias_flux)),

@@ -12,6 +12,8 @@ use std::path::Path;
 
 use super::loop_packages::LoopPackages;
 use super::report::quantity;
+use super::run::Run;
+use super::sweep::part;
 use super::{Findings, Progress, StudyError, Summary};
 use crate::host::Value;
 use crate::unit::system::RIG as SYSTEM;
@@ -19,16 +21,18 @@ use observers::{KINDS, PRINTED_INPUT_GAIN, holding, interpolating};
 use ranking::{Comparison, PRINTED_EXPERIMENT, PRINTED_SIMULATION, Start, Table5, both, compare, start_up};
 use recording::Reference;
 use searches::Searches;
-use simulation::{Measurement, Run, Scenario, simulate};
+use simulation::{Measurement, Scenario, simulate};
 
 const PROVENANCE: &[&str] = &[
-    "Source: A. J. Humaidi et al., Experimental Design and Verification of Extended State Observers for Magnetic \
-     Levitation System Based on PSO, Open Electr. Electron. Eng. J. 12, 110-120, 2018. Printed there: Tables 1 to 5 and \
-     the gains of the PID. The equations are pictures that were not at hand; their form follows the words around them and \
-     the standard works (Han, Gao). Assumed: the objective's form, T = 1 ms, metres or volts, all that is not printed about \
-     the runs. From the rig's manual: the sensor.",
-    "The loop is the rig under its digital PID, through the packaged units; the searches run natively over a recording of \
-     the same loop. Errors are scored at every millisecond, the first sample included.",
+    "Source: A. J. Humaidi et al., Experimental Design and Verification of Extended State \
+             Observers for Magnetic Levitation System Based on PSO, Open Electr. Electron. Eng. J. 12, \
+             110-120, 2018. Printed there: Tables 1 to 5 and the gains of the PID. The equations are \
+             pictures that were not at hand; their form follows the words around them and the standard \
+             works (Han, Gao). Assumed: the objective's form, T = 1 ms, metres or volts, all that is not \
+             printed about the runs. From the rig's manual: the sensor.",
+    "The loop is the rig under its digital PID, through the packaged units; the searches run \
+             natively over a recording of the same loop. Errors are scored at every millisecond, the \
+             first sample included.",
 ];
 
 /// Runs everything through the packages in `packages`.
@@ -36,8 +40,7 @@ pub fn run(packages: &Path, progress: Progress<'_>) -> Result<Findings, StudyErr
     progress(0.0, "rig: Table 5");
     let packages = LoopPackages::open(packages, &SYSTEM)?;
     let table = Table5::simulate(&packages)?;
-    progress(0.1, "rig: comparing observers");
-    let comparisons = compare(&packages)?;
+    let comparisons = compare(&packages, &part(progress, 0.1, 0.6))?;
     progress(0.6, "rig: particle swarms");
     let searches = Searches::run()?;
     progress(0.8, "rig: claims");
@@ -91,10 +94,10 @@ fn table_5(table: &Table5) -> Summary {
             format!("{:.4}", nonlinear / linear),
         ]
     };
-    Summary {
-        title: "Table 5: RMSE as printed and as computed".to_owned(),
-        headers: ["row", "LESO", "NESO", "NESO over LESO"].map(str::to_owned).to_vec(),
-        rows: vec![
+    Summary::new(
+        "Table 5: RMSE as printed and as computed",
+        ["row", "LESO", "NESO", "NESO over LESO"],
+        vec![
             row("by simulation, printed", PRINTED_SIMULATION, ""),
             row("by simulation, here: metres, from zero, 8.5 mm, 2 s", table.simulation_errors, "m"),
             row("by experiment, printed", PRINTED_EXPERIMENT, ""),
@@ -104,15 +107,15 @@ fn table_5(table: &Table5) -> Summary {
                 "V",
             ),
         ],
-    }
+    )
 }
 
 /// Who wins, in words.
 fn conditions(comparisons: &[Comparison]) -> Summary {
     let noises = [0.0, 1e-4, 1e-3, 1e-2];
     let mut rows = Vec::new();
-    for (start, start_name) in [(Start::FromZero, "from zero"), (Start::Steady, "steady")] {
-        for (measurement, unit) in [(Measurement::Metres, "metres"), (Measurement::Volts, "volts")] {
+    for (start, start_name) in ranking::STARTS {
+        for (measurement, unit) in ranking::MEASUREMENTS {
             for (reference, (_, name)) in ranking::REFERENCES.iter().enumerate() {
                 let cells = noises.iter().map(|noise| {
                     let case = comparisons.iter().find(|case| {
@@ -132,14 +135,12 @@ fn conditions(comparisons: &[Comparison]) -> Summary {
             }
         }
     }
-    Summary {
-        title: "Better observer of z1, printed parameters (rms errors of NESO over LESO of z1, z2, z3)"
-            .to_owned(),
-        headers: std::iter::once("unit, estimates at the start, reference".to_owned())
-            .chain(noises.iter().map(|noise| format!("noise {}", quantity(*noise, "V"))))
-            .collect(),
+    Summary::new(
+        "Better observer of z1, printed parameters (rms errors of NESO over LESO of z1, z2, z3)",
+        std::iter::once("unit, estimates at the start, reference".to_owned())
+            .chain(noises.iter().map(|noise| format!("noise {}", quantity(*noise, "V")))),
         rows,
-    }
+    )
 }
 
 /// From the numbers: when which observer.
@@ -164,9 +165,9 @@ fn advice(comparisons: &[Comparison]) -> String {
         })
         .collect();
     format!(
-        "With the printed parameters, in sensor volts and from a steady start, the smaller position error has: {}. The \
-         printed ranking says how an observer starts from zero in metres, nothing more. Start estimates with \
-         observer.initial = steady, and tune: maglev-fmu tune.",
+        "With the printed parameters, in sensor volts and from a steady start, the smaller position \
+             error has: {}. The printed ranking says how an observer starts from zero in metres, nothing \
+             more. Start estimates with observer.initial = steady, and tune: maglev-fmu tune.",
         flips.join("; ")
     )
 }

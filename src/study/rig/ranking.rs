@@ -1,12 +1,13 @@
 //! Table 5, and which observer is better under which conditions.
 
-use rayon::prelude::*;
-
 use super::observers::{KINDS, PRINTED_INPUT_GAIN, holding, interpolating};
 use super::recording::Reference;
-use super::simulation::{Measurement, Run, Scenario, root_mean_square, simulate};
-use crate::study::StudyError;
+use super::simulation::{self, Measurement, Scenario, simulate};
 use crate::study::loop_packages::LoopPackages;
+use crate::study::metrics::root_mean_square;
+use crate::study::run::Run;
+use crate::study::sweep::{indices, sweep};
+use crate::study::{Progress, StudyError};
 
 /// Table 5 as printed: LESO, NESO.
 pub const PRINTED_SIMULATION: [f64; 2] = [2.9797e-4, 3.36361e-4];
@@ -45,9 +46,9 @@ impl Table5 {
         let experiment = both(packages, &moving)?;
         Ok(Self {
             simulation_errors: errors(&simulation, Measurement::Metres, 0.0).map(|errors| errors[0]),
-            experiment_errors: [&experiment[0], &experiment[1]].map(|run| {
-                let innovation = run.innovation.iter().zip(&run.time).filter(|(_, time)| **time >= 1.0);
-                root_mean_square(innovation.map(|(innovation, _)| *innovation))
+            experiment_errors: [0, 1].map(|who| {
+                let run = &experiment[who];
+                root_mean_square(run.since(1.0, &run["controller.observer.residual"]))
             }),
         })
     }
@@ -63,7 +64,7 @@ pub fn start_up(duration: f64) -> Scenario {
 
 /// rms e1, e2, e3 of LESO and NESO.
 fn errors(runs: &[Run; 2], measurement: Measurement, start: f64) -> [[f64; 3]; 2] {
-    [&runs[0], &runs[1]].map(|run| run.errors(measurement, PRINTED_INPUT_GAIN, start))
+    [&runs[0], &runs[1]].map(|run| simulation::errors(run, measurement, PRINTED_INPUT_GAIN, start))
 }
 
 /// Standard deviations of the sensor \[V\].
@@ -101,32 +102,28 @@ pub struct Comparison {
     pub linear: [f64; 3],
 }
 
+/// Units and starts with their names.
+pub const MEASUREMENTS: [(Measurement, &str); 2] =
+    [(Measurement::Metres, "metres"), (Measurement::Volts, "volts")];
+pub const STARTS: [(Start, &str); 2] = [(Start::FromZero, "from zero"), (Start::Steady, "steady")];
+
 /// LESO and NESO with the printed parameters under all conditions.
-pub fn compare(packages: &LoopPackages) -> Result<Vec<Comparison>, StudyError> {
-    let mut cases = Vec::new();
-    for measurement in [Measurement::Metres, Measurement::Volts] {
-        for start in [Start::FromZero, Start::Steady] {
-            for reference in 0..REFERENCES.len() {
-                cases.extend(NOISES.map(|noise| (measurement, start, reference, noise)));
-            }
-        }
-    }
-    cases
-        .into_par_iter()
-        .map(|(measurement, start, reference, noise)| {
-            let (item, from) = match start {
-                Start::FromZero => ("zero", 0.0),
-                Start::Steady => ("steady", 1.0),
-            };
-            let scenario = Scenario {
-                noise,
-                ..Scenario::new(REFERENCES[reference].0, DURATION, &holding(measurement, item))
-            };
-            let [linear, nonlinear] = errors(&both(packages, &scenario)?, measurement, from);
-            let ratios = core::array::from_fn(|state| nonlinear[state] / linear[state]);
-            Ok(Comparison { measurement, start, reference, noise, ratios, linear })
-        })
-        .collect()
+pub fn compare(packages: &LoopPackages, progress: Progress<'_>) -> Result<Vec<Comparison>, StudyError> {
+    let cases = indices([MEASUREMENTS.len(), STARTS.len(), REFERENCES.len(), NOISES.len()]);
+    sweep(&cases, progress, "rig: comparing observers", |&[measurement, start, reference, noise]| {
+        let (measurement, start, noise) = (MEASUREMENTS[measurement].0, STARTS[start].0, NOISES[noise]);
+        let (item, from) = match start {
+            Start::FromZero => ("zero", 0.0),
+            Start::Steady => ("steady", 1.0),
+        };
+        let scenario = Scenario {
+            noise,
+            ..Scenario::new(REFERENCES[reference].0, DURATION, &holding(measurement, item))
+        };
+        let [linear, nonlinear] = errors(&both(packages, &scenario)?, measurement, from);
+        let ratios = core::array::from_fn(|state| nonlinear[state] / linear[state]);
+        Ok(Comparison { measurement, start, reference, noise, ratios, linear })
+    })
 }
 
 /// Below this rms e1 \[m or V\] an observer makes no error worth the name, and a ratio compares round-off.

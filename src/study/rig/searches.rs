@@ -1,5 +1,6 @@
 //! The paper's tuning repeated: its objective with its swarm, and with swarms that settle.
 
+use crate::study::metrics::{median, smallest};
 use crate::study::tuning::candidate::ObserverKind;
 use crate::study::tuning::settings::SwarmSettings;
 use crate::study::tuning::{Objective, Tuned, convergence, tune};
@@ -60,16 +61,11 @@ impl Searches {
 
 /// Smallest J of some searches.
 pub fn best(searches: &[Tuned]) -> f64 {
-    searches.iter().map(|tuned| tuned.optimum.cost).fold(f64::INFINITY, f64::min)
+    smallest(searches.iter().map(|tuned| tuned.optimum.cost))
 }
 
 /// Middle one of the velocities over range that are left after the last iteration.
 pub fn final_velocity(searches: &[Tuned]) -> f64 {
-    let mut left: Vec<f64> = searches
-        .iter()
-        .filter_map(|tuned| tuned.optimum.history.last())
-        .map(|iteration| iteration.relative_velocity)
-        .collect();
-    left.sort_by(f64::total_cmp);
-    left.get(left.len() / 2).copied().unwrap_or(f64::NAN)
+    let last = searches.iter().filter_map(|tuned| tuned.optimum.history.last());
+    median(last.map(|iteration| iteration.relative_velocity))
 }

@@ -5,6 +5,8 @@ use crate::host::Value;
 use crate::plant::maglev_rig::MaglevRig;
 use crate::study::StudyError;
 use crate::study::loop_packages::{LoopPackages, Parameter};
+use crate::study::metrics::{difference, root_mean_square};
+use crate::study::run::Run;
 
 /// Conditions of a run; everything else keeps the units' start values.
 #[derive(Clone, Debug)]
@@ -43,42 +45,11 @@ impl Scenario {
     }
 }
 
-/// Samples of a run, one per tick.
-#[derive(Clone, Debug, Default)]
-pub struct Run {
-    /// \[s\]
-    pub time: Vec<f64>,
-    /// r \[V\]
-    pub reference: Vec<f64>,
-    /// x \[m\]
-    pub position: Vec<f64>,
-    /// x' \[m/s\]
-    pub velocity: Vec<f64>,
-    /// x'' \[m/s2\] just after the tick.
-    pub acceleration: Vec<f64>,
-    /// Without noise \[V\].
-    pub sensor_voltage: Vec<f64>,
-    /// From the tick on \[V\].
-    pub voltage: Vec<f64>,
-    /// z1, z2, z3 in metres or volts as `observer.measurement` selects.
-    pub estimate: [Vec<f64>; 3],
-    /// y less what the observer expected of it, in metres or volts.
-    pub innovation: Vec<f64>,
-    /// Whether the ball touched a stop.
-    pub contact: bool,
-}
-
-const RECORDED: [(&str, &str); 9] = [
-    ("plant", "position"),
-    ("plant", "velocity"),
-    ("plant", "sensor_voltage"),
-    ("controller", "voltage"),
-    ("controller", "estimate.position"),
-    ("controller", "estimate.velocity"),
-    ("controller", "estimate.extended"),
-    ("controller", "observer.residual"),
-    ("plant", "contact"),
-];
+/// r \[V\] and x'' \[m/s2\] just after the tick: columns that are added to what is recorded.
+pub const REFERENCE: &str = "reference";
+pub const ACCELERATION: &str = "acceleration";
+/// States of the observer, in metres or volts as `observer.measurement` selects.
+pub const ESTIMATES: [&str; 3] = ["position", "velocity", "extended"];
 
 /// Runs a scenario.
 pub fn simulate(packages: &LoopPackages, scenario: &Scenario) -> Result<Run, StudyError> {
@@ -99,10 +70,20 @@ pub fn simulate(packages: &LoopPackages, scenario: &Scenario) -> Result<Run, Stu
     controller.extend_from_slice(&scenario.parameters);
     let wanted = |time: f64| rest + scenario.amplitude * scenario.reference.at(time);
     let is_pushed = |time: f64| push != 0.0 && time >= push_from - 0.5 * SAMPLE_TIME;
-    let trace = packages.simulate_with(
+    let run = packages.simulate_with(
         &plant,
         &controller,
-        &RECORDED,
+        &[
+            ("plant", "position"),
+            ("plant", "velocity"),
+            ("plant", "sensor_voltage"),
+            ("plant", "contact"),
+            ("controller", "voltage"),
+            ("controller", "estimate.position"),
+            ("controller", "estimate.velocity"),
+            ("controller", "estimate.extended"),
+            ("controller", "observer.residual"),
+        ],
         SAMPLE_TIME,
         scenario.duration,
         |time, controller, plant| {
@@ -115,30 +96,14 @@ pub fn simulate(packages: &LoopPackages, scenario: &Scenario) -> Result<Run, Stu
             Ok(())
         },
     )?;
-    let mut columns = trace.columns.into_iter();
-    let mut next = || columns.next().unwrap_or_default();
-    let mut run = Run {
-        position: next(),
-        velocity: next(),
-        sensor_voltage: next(),
-        voltage: next(),
-        estimate: [next(), next(), next()],
-        innovation: next(),
-        contact: next().iter().any(|contact| *contact != 0.0),
-        ..Run::default()
-    };
-    run.reference = trace.time.iter().map(|time| wanted(*time)).collect();
-    run.acceleration = trace
-        .time
-        .iter()
-        .zip(run.position.iter().zip(&run.voltage))
-        .map(|(time, (position, voltage))| {
-            let force = if is_pushed(*time) { rig.mass * push } else { 0.0 };
-            rig.acceleration(*position, *voltage, force)
-        })
-        .collect();
-    run.time = trace.time;
-    Ok(run)
+    let reference = run.time.iter().map(|time| wanted(*time)).collect();
+    let samples = run.state("position").iter().zip(&run["controller.voltage"]);
+    let acceleration = run.time.iter().zip(samples).map(|(time, (position, voltage))| {
+        let force = if is_pushed(*time) { rig.mass * push } else { 0.0 };
+        rig.acceleration(*position, *voltage, force)
+    });
+    let acceleration = acceleration.collect();
+    Ok(run.with(REFERENCE, reference).with(ACCELERATION, acceleration))
 }
 
 /// The unit in which an observer works.
@@ -148,43 +113,30 @@ pub enum Measurement {
     Volts,
 }
 
-impl Run {
-    /// True x1, x2, x3 = x'' - b u in the observer's unit, over time.
-    pub fn truth(&self, measurement: Measurement, input_gain: f64) -> [Vec<f64>; 3] {
-        let scale = match measurement {
-            Measurement::Metres => 1.0,
-            Measurement::Volts => SENSOR.gain,
-        };
-        let position = match measurement {
-            Measurement::Metres => self.position.clone(),
-            Measurement::Volts => self.sensor_voltage.clone(),
-        };
-        let extended = self.acceleration.iter().zip(&self.voltage);
-        [
-            position,
-            self.velocity.iter().map(|velocity| scale * velocity).collect(),
-            extended.map(|(acceleration, voltage)| scale * acceleration - input_gain * voltage).collect(),
-        ]
-    }
-
-    /// Root mean square of truth minus estimate of z1, z2, z3 from `start` \[s\] on.
-    pub fn errors(&self, measurement: Measurement, input_gain: f64, start: f64) -> [f64; 3] {
-        let truth = self.truth(measurement, input_gain);
-        core::array::from_fn(|state| {
-            let both = truth[state].iter().zip(&self.estimate[state]).zip(&self.time);
-            let scored = both.filter(|(_, time)| **time >= start - 0.5 * SAMPLE_TIME);
-            root_mean_square(scored.map(|((truth, estimate), _)| truth - estimate))
-        })
-    }
+/// True x1, x2, x3 = x'' - b u in the observer's unit, over time.
+pub fn truth(run: &Run, measurement: Measurement, input_gain: f64) -> [Vec<f64>; 3] {
+    let (position, scale) = match measurement {
+        Measurement::Metres => ("position", 1.0),
+        Measurement::Volts => ("sensor_voltage", SENSOR.gain),
+    };
+    let extended = run[ACCELERATION].iter().zip(&run["controller.voltage"]);
+    [
+        run.state(position).to_vec(),
+        run.state("velocity").iter().map(|velocity| scale * velocity).collect(),
+        extended.map(|(acceleration, voltage)| scale * acceleration - input_gain * voltage).collect(),
+    ]
 }
 
-/// sqrt(mean x^2)
-pub fn root_mean_square(values: impl Iterator<Item = f64>) -> f64 {
-    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value * value, count + 1.0));
-    if count > 0.0 { libm::sqrt(sum / count) } else { f64::NAN }
+/// Root mean square of truth minus estimate of z1, z2, z3 from `start` \[s\] on.
+pub fn errors(run: &Run, measurement: Measurement, input_gain: f64, start: f64) -> [f64; 3] {
+    let truth = truth(run, measurement, input_gain);
+    core::array::from_fn(|state| {
+        let error = difference(&truth[state], run.estimate(ESTIMATES[state]));
+        root_mean_square(run.since(start, &error))
+    })
 }
 
-/// Largest magnitude.
-pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
-    values.into_iter().fold(0.0, |peak, value| peak.max(value.abs()))
+/// y - r \[V\] without noise.
+pub fn control_error(run: &Run) -> Vec<f64> {
+    difference(run.state("sensor_voltage"), &run[REFERENCE])
 }

@@ -1,15 +1,16 @@
 //! The ball is pushed: the paper's PID against disturbance rejection through the extended state.
 
-use rayon::prelude::*;
-
+use crate::chart::Panel;
 use crate::host::Value;
-use crate::study::chart::{Figure, Panel, Series, Stroke};
 use crate::study::loop_packages::{LoopPackages, Parameter};
+use crate::study::metrics::{difference, peak, root_mean_square};
 use crate::study::report::quantity;
 use crate::study::rig::observers::KINDS;
 use crate::study::rig::recording::{Reference, SENSOR, SET_POINT};
-use crate::study::rig::simulation::{Run, Scenario, largest, root_mean_square, simulate};
-use crate::study::{FigureWithData, StudyError, Summary, Table};
+use crate::study::rig::simulation::{Scenario, control_error, simulate};
+use crate::study::run::Run;
+use crate::study::sweep::sweep;
+use crate::study::{FigureWithData, Progress, StudyError, Summary, Table};
 
 /// 1 m/s2 from 1 s on.
 const PUSH: (f64, f64) = (1.0, 1.0);
@@ -23,6 +24,7 @@ const INPUT_GAIN: f64 = -3705.0;
 const MASS_RATIOS: [f64; 3] = [1.0, 0.8, 1.2];
 
 /// A law with its observer.
+#[derive(Clone)]
 pub struct Law {
     pub name: &'static str,
     parameters: Vec<Parameter<'static>>,
@@ -76,76 +78,60 @@ pub struct Outcome {
     pub kept: usize,
 }
 
-pub fn compare(packages: &LoopPackages) -> Result<Vec<Outcome>, StudyError> {
-    laws()
-        .into_par_iter()
-        .map(|law| {
-            let run = |noise: f64, mass_ratio: f64| {
-                simulate(
-                    packages,
-                    &Scenario {
-                        noise,
-                        mass_ratio,
-                        push: PUSH,
-                        ..Scenario::new(Reference::Hold, DURATION, &law.parameters)
-                    },
-                )
-            };
-            let runs = [run(0.0, 1.0)?, run(NOISE, 1.0)?];
-            let kept = MASS_RATIOS
-                .iter()
-                .map(|ratio| Ok(usize::from(!run(NOISE, *ratio)?.contact)))
-                .sum::<Result<usize, StudyError>>()?;
-            let errors =
-                [&runs[0], &runs[1]].map(|run| (!run.contact).then(|| root_mean_square(control_errors(run))));
-            let steps = runs[1].voltage.windows(2).skip(500).map(|pair| pair[1] - pair[0]);
-            let effort = root_mean_square(steps);
-            Ok(Outcome { peak: largest(control_errors(&runs[0])), errors, effort, kept, law, runs })
-        })
-        .collect()
-}
-
-/// y - r from the push on \[V\], from the noise-free sensor voltage.
-fn control_errors(run: &Run) -> impl Iterator<Item = f64> + '_ {
-    let rows = run.time.iter().zip(run.sensor_voltage.iter().zip(&run.reference));
-    rows.filter(|(time, _)| **time >= PUSH.1).map(|(_, (sensor, reference))| sensor - reference)
+pub fn compare(packages: &LoopPackages, progress: Progress<'_>) -> Result<Vec<Outcome>, StudyError> {
+    sweep(&laws(), progress, "rig-observers: pushing the ball", |law| {
+        let run = |noise: f64, mass_ratio: f64| {
+            let push = PUSH;
+            let scenario = Scenario::new(Reference::Hold, DURATION, &law.parameters);
+            simulate(packages, &Scenario { noise, mass_ratio, push, ..scenario })
+        };
+        let runs = [run(0.0, 1.0)?, run(NOISE, 1.0)?];
+        let kept = MASS_RATIOS
+            .iter()
+            .map(|ratio| Ok(usize::from(run(NOISE, *ratio)?.lost_at.is_none())))
+            .sum::<Result<usize, StudyError>>()?;
+        // y - r from the push on [V].
+        let late = [0, 1].map(|which| runs[which].since(PUSH.1, &control_error(&runs[which])).to_vec());
+        let errors = [0, 1].map(|which| {
+            let error = root_mean_square(&late[which]);
+            runs[which].lost_at.is_none().then_some(error)
+        });
+        let voltage = &runs[1]["controller.voltage"][500..];
+        let effort = root_mean_square(difference(&voltage[1..], voltage));
+        Ok(Outcome { peak: peak(&late[0]), errors, effort, kept, law: law.clone(), runs })
+    })
 }
 
 pub fn table(outcomes: &[Outcome]) -> Summary {
-    let rows = outcomes
-        .iter()
-        .map(|outcome| {
-            let error = |error: Option<f64>| {
-                error.map_or("ball lost".to_owned(), |error| {
-                    format!("{:.2} mV, {:.4} mm", 1e3 * error, 1e3 * error / SENSOR.gain)
-                })
-            };
-            let is_lost = outcome.errors[0].is_none();
-            let unless_lost = |text: String| if is_lost { "-".to_owned() } else { text };
-            vec![
-                outcome.law.name.to_owned(),
-                error(outcome.errors[0]),
-                unless_lost(format!("{:.1} mV", 1e3 * outcome.peak)),
-                error(outcome.errors[1]),
-                unless_lost(quantity(outcome.effort, "V")),
-                format!("{} of {}", outcome.kept, MASS_RATIOS.len()),
-            ]
-        })
-        .collect();
-    Summary {
-        title: "A push of 1 m/s² at 9 mm: control error over the 2 s after it".to_owned(),
-        headers: [
+    let rows = outcomes.iter().map(|outcome| {
+        let error = |error: Option<f64>| {
+            error.map_or("ball lost".to_owned(), |error| {
+                format!("{:.2} mV, {:.4} mm", 1e3 * error, 1e3 * error / SENSOR.gain)
+            })
+        };
+        let is_lost = outcome.errors[0].is_none();
+        let unless_lost = |text: String| if is_lost { "-".to_owned() } else { text };
+        vec![
+            outcome.law.name.to_owned(),
+            error(outcome.errors[0]),
+            unless_lost(format!("{:.1} mV", 1e3 * outcome.peak)),
+            error(outcome.errors[1]),
+            unless_lost(quantity(outcome.effort, "V")),
+            format!("{} of {}", outcome.kept, MASS_RATIOS.len()),
+        ]
+    });
+    Summary::new(
+        "A push of 1 m/s² at 9 mm: control error over the 2 s after it",
+        [
             "law",
             "rms, no noise",
             "peak, no noise",
             "rms, 1 mV",
             "rms voltage step, 1 mV",
             "ball kept with -20, 0, +20 % mass, 1 mV",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
+        ],
         rows,
-    }
+    )
 }
 
 pub fn figure(outcomes: &[Outcome]) -> FigureWithData {
@@ -159,29 +145,24 @@ pub fn figure(outcomes: &[Outcome]) -> FigureWithData {
     for (colour, outcome) in outcomes.iter().filter(|outcome| outcome.errors[0].is_some()).enumerate() {
         let name = outcome.law.name;
         let below = |run: &Run| -> Vec<(f64, f64)> {
-            run.time.iter().zip(&run.position).map(|(time, x)| (*time, 1e3 * (x - SET_POINT))).collect()
+            let positions = run.time.iter().zip(run.state("position"));
+            positions.map(|(time, x)| (*time, 1e3 * (x - SET_POINT))).collect()
         };
-        let held: Vec<(f64, f64)> =
-            outcome.runs[1].time.iter().copied().zip(outcome.runs[1].voltage.iter().copied()).collect();
-        position = position.with(Series::new(name, colour, Stroke::Solid, below(&outcome.runs[0])));
-        noisy = noisy.with(Series::new("", colour, Stroke::Solid, below(&outcome.runs[1])));
-        voltage = voltage.with(Series::new("", colour, Stroke::Held, held));
+        position = position.line(name, colour, below(&outcome.runs[0]));
+        noisy = noisy.line("", colour, below(&outcome.runs[1]));
+        voltage = voltage.held("", colour, outcome.runs[1].points("controller.voltage", 1.0));
         if table.columns.is_empty() {
-            table.headers.push("time [s]".to_owned());
-            table.columns.push(outcome.runs[0].time.clone());
+            table.add("time [s]", &outcome.runs[0].time);
         }
         for (run, noise) in outcome.runs.iter().zip(["no noise", "noise 1 mV"]) {
-            table.headers.extend([format!("{name}, {noise}: x [m]"), format!("{name}, {noise}: u [V]")]);
-            table.columns.extend([run.position.clone(), run.voltage.clone()]);
+            table.add(format!("{name}, {noise}: x [m]"), run.state("position"));
+            table.add(format!("{name}, {noise}: u [V]"), &run["controller.voltage"]);
         }
     }
-    let figure = Figure {
-        title: "A push of 1 m/s²: PID against disturbance rejection".to_owned(),
-        caption: "Position and voltage around the push at 1 s. The PID's slow integral leaves an error that disturbance \
-                  rejection removes within 0.1 s. Loops that lose the ball are in the table only."
-            .to_owned(),
-        columns: 3,
-        panels: vec![position, noisy, voltage],
-    };
-    FigureWithData { name: "rig_force_step".to_owned(), figure, table }
+    FigureWithData::new("rig_force_step", "A push of 1 m/s²: PID against disturbance rejection", table)
+        .caption(
+            "Position and voltage around the push at 1 s. The PID's slow integral leaves an error that \
+             disturbance rejection removes within 0.1 s. Loops that lose the ball are in the table only.",
+        )
+        .panels(3, [position, noisy, voltage])
 }

@@ -3,15 +3,16 @@
 use rayon::prelude::*;
 
 use super::estimators::{ExtendedStateEstimator, velocity_error};
+use crate::chart::Panel;
 use crate::host::Value;
 use crate::observer::extended_state::{ExtendedState, gains_from_bandwidth};
 use crate::observer::sampled_extended_state::{ExtendedStateObserver, ExtendedStateSettings, Form};
-use crate::study::chart::{Figure, Panel, Series, Stroke};
 use crate::study::loop_packages::LoopPackages;
+use crate::study::metrics::peak;
 use crate::study::report::quantity;
 use crate::study::rig::observers::KINDS;
 use crate::study::rig::recording::{Conditions, RIG, Recording, Reference, SENSOR, SET_POINT};
-use crate::study::rig::simulation::{Measurement, Scenario, largest, simulate};
+use crate::study::rig::simulation::{Measurement, Scenario, errors, simulate};
 use crate::study::tuning::candidate::Candidate;
 use crate::study::tuning::noise_aware::settings;
 use crate::study::{FigureWithData, StudyError, Summary, Table};
@@ -119,37 +120,30 @@ pub fn figure(lines: &[Line]) -> FigureWithData {
     )
     .x_logarithmic()
     .logarithmic();
-    let mut table =
-        Table { headers: vec!["bandwidth [rad/s]".to_owned()], columns: vec![BANDWIDTHS.to_vec()] };
+    let mut table = Table::default();
+    table.add("bandwidth [rad/s]", BANDWIDTHS);
     for (colour, line) in lines.iter().enumerate() {
         let in_plane = line.points.iter().map(|(_, peak, error)| (*peak, 1e3 * error));
         let over_bandwidth = line.points.iter().map(|(bandwidth, _, error)| (*bandwidth, 1e3 * error));
-        plane = plane.with(Series::new("", colour, Stroke::Solid, in_plane));
-        over = over.with(Series::new(line.name, colour, Stroke::Solid, over_bandwidth));
-        let column = |value: fn(&(f64, f64, f64)) -> f64| -> Vec<f64> {
-            let at = |bandwidth: &f64| {
-                line.points.iter().find(|point| point.0 == *bandwidth).map_or(f64::NAN, value)
-            };
-            BANDWIDTHS.iter().map(at).collect()
+        plane = plane.line("", colour, in_plane);
+        over = over.line(line.name, colour, over_bandwidth);
+        let column = |value: fn(&(f64, f64, f64)) -> f64| {
+            BANDWIDTHS.map(|bandwidth| {
+                line.points.iter().find(|point| point.0 == bandwidth).map_or(f64::NAN, value)
+            })
         };
-        table.headers.extend([
-            format!("{}: peak from zero [m/s]", line.name),
-            format!("{}: rms velocity error [m/s]", line.name),
-        ]);
-        table.columns.extend([column(|point| point.1), column(|point| point.2)]);
+        table.add(format!("{}: peak from zero [m/s]", line.name), column(|point| point.1));
+        table.add(format!("{}: rms velocity error [m/s]", line.name), column(|point| point.2));
     }
     let best = front(lines).into_iter().map(|(peak, error)| (peak, 1e3 * error));
-    plane = plane.with(Series::new("Pareto front", 6, Stroke::Dots, best));
-    let figure = Figure {
-        title: "Noise against peaking".to_owned(),
-        caption: "Observers in sensor volts. Left: what none other beats in both respects is dotted. NESO above \
-                  400 rad/s is more than one Runge-Kutta step per ms can solve. The peak arises from zero estimates \
-                  alone; see the table of starts for how to do without."
-            .to_owned(),
-        columns: 2,
-        panels: vec![plane, over],
-    };
-    FigureWithData { name: "rig_peaking".to_owned(), figure, table }
+    plane = plane.dots("Pareto front", 6, best);
+    FigureWithData::new("rig_peaking", "Noise against peaking", table)
+        .caption(
+            "Observers in sensor volts. Left: what none other beats in both respects is dotted. NESO above \
+             400 rad/s is more than one Runge-Kutta step per ms can solve. The peak arises from zero \
+             estimates alone; see the table of starts for how to do without.",
+        )
+        .panels(2, [plane, over])
 }
 
 /// Peaks and rms errors for the controller unit's three starts, through the packages.
@@ -168,24 +162,20 @@ pub fn starts(packages: &LoopPackages) -> Result<Summary, StudyError> {
                 ("observer.initial", Value::Text(start)),
             ];
             let run = simulate(packages, &Scenario::new(Reference::Hold, 2.0, &parameters))?;
-            let peak = largest(run.estimate[1].iter().map(|velocity| velocity / SENSOR.gain));
-            let error = run.errors(Measurement::Volts, input_gain, 0.0)[0];
+            let peak = peak(run.estimate("velocity").iter().map(|velocity| velocity / SENSOR.gain));
+            let error = errors(&run, Measurement::Volts, input_gain, 0.0)[0];
             row.push(format!("{}, {}", quantity(peak, "m/s"), quantity(error, "V")));
         }
         rows.push(row);
     }
-    Ok(Summary {
-        title:
-            "Start of the estimates, ball at rest at 9 mm, observer in volts: largest |z2|, rms e1 over 2 s"
-                .to_owned(),
-        headers: [
+    Ok(Summary::new(
+        "Start of the estimates, ball at rest at 9 mm, observer in volts: largest |z2|, rms e1 over 2 s",
+        [
             "observer",
             "zero, as in the paper",
             "matched: position measured",
             "steady: and what holds the ball",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
+        ],
         rows,
-    })
+    ))
 }

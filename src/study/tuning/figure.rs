@@ -1,7 +1,7 @@
 //! How a search went.
 
 use super::swarm::Iteration;
-use crate::study::chart::{Figure, Panel, Series, Stroke};
+use crate::chart::Panel;
 use crate::study::{FigureWithData, Table};
 
 const ITERATION: &str = "iteration";
@@ -24,38 +24,27 @@ pub fn convergence(
     .logarithmic();
     let mut table = Table::default();
     for (colour, (label, history)) in searches.iter().enumerate() {
-        let line = |value: fn(&Iteration) -> f64| -> Vec<(f64, f64)> {
-            history.iter().map(|iteration| (iteration.number as f64, value(iteration))).collect()
-        };
-        cost = cost.with(Series::new(label, colour, Stroke::Solid, line(|iteration| iteration.best_cost)));
-        velocity = velocity.with(Series::new(
-            "",
-            colour,
-            Stroke::Solid,
-            line(|iteration| iteration.relative_velocity),
-        ));
+        let column = |value: fn(&Iteration) -> f64| history.iter().map(value);
+        let numbers = || column(|iteration| iteration.number as f64);
+        let costs = || column(|iteration| iteration.best_cost);
+        let velocities = || column(|iteration| iteration.relative_velocity);
+        cost = cost.line(label, colour, numbers().zip(costs()));
+        velocity = velocity.line("", colour, numbers().zip(velocities()));
         if table.columns.is_empty() {
-            table.headers.push("iteration [1]".to_owned());
-            table.columns.push(history.iter().map(|iteration| iteration.number as f64).collect());
+            table.add("iteration [1]", numbers());
         }
-        table
-            .headers
-            .extend([format!("{label}: {objective}"), format!("{label}: rms velocity over range [1]")]);
-        table.columns.push(history.iter().map(|iteration| iteration.best_cost).collect());
-        table.columns.push(history.iter().map(|iteration| iteration.relative_velocity).collect());
+        table.add(format!("{label}: {objective}"), costs());
+        table.add(format!("{label}: rms velocity over range [1]"), velocities());
     }
     if let Some(printed) = printed {
         let end = searches.iter().map(|(_, history)| history.len()).max().unwrap_or(1) as f64 - 1.0;
         let line = [(0.0, printed), (end, printed)];
-        cost = cost.with(Series::new("printed parameters", searches.len(), Stroke::Dashed, line));
+        cost = cost.dashed("printed parameters", searches.len(), line);
     }
-    let figure = Figure {
-        title,
-        caption: "Smallest value of the objective found so far, and the root mean square of all velocities relative to \
-                  the box, which falls while a swarm settles."
-            .to_owned(),
-        columns: 2,
-        panels: vec![cost, velocity],
-    };
-    FigureWithData { name: name.to_owned(), figure, table }
+    FigureWithData::new(name, title, table)
+        .caption(
+            "Smallest value of the objective found so far, and the root mean square of all velocities \
+             relative to the box, which falls while a swarm settles.",
+        )
+        .panels(2, [cost, velocity])
 }

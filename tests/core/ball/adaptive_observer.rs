@@ -80,9 +80,9 @@ fn resistance_is_learnt() {
         assert!(run.run(0.0, 2.0).survived, "{error}");
         let end = run.run(2.0, 3.0);
         assert!(end.largest_flux_error < 1e-4, "{error}: {end:?}");
-        let learnt = get(&run.controller, "observer.estimated_resistance");
+        let learnt = get(&*run.controller, "observer.estimated_resistance");
         assert!((learnt / resistance - 1.0).abs() < 1e-3, "{error}: {learnt} {resistance}");
-        assert_eq!(get(&run.controller, "observer.voltage_offset"), 0.0);
+        assert_eq!(get(&*run.controller, "observer.voltage_offset"), 0.0);
     }
 }
 
@@ -99,10 +99,10 @@ fn voltage_offset_is_learnt() {
         assert!(run.run(0.0, 2.0).survived, "{offset}");
         let end = run.run(2.0, 3.0);
         assert!(end.largest_flux_error < 1e-4, "{offset}: {end:?}");
-        let learnt = get(&run.controller, "observer.voltage_offset");
+        let learnt = get(&*run.controller, "observer.voltage_offset");
         assert!((learnt - offset).abs() < 1e-4, "{offset}: {learnt}");
         assert_eq!(
-            get(&run.controller, "observer.estimated_resistance"),
+            get(&*run.controller, "observer.estimated_resistance"),
             LevitatedBall::LABORATORY.resistance
         );
     }

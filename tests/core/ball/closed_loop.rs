@@ -68,7 +68,7 @@ fn polynomial_newton_needs_no_excitation() {
 fn mixing_learns_nothing_from_a_constant_reference() {
     let mut run = BallLoop::new(Constant, 0.0, &[], &[("observer.kind", DREM)]);
     run.run(0.0, 1.0);
-    assert!(get(&run.controller, "observer.excitation").abs() < 1e-12);
+    assert!(get(&*run.controller, "observer.excitation").abs() < 1e-12);
 }
 
 /// With the true state the loop is (23), sampled: the error of the held voltage falls with the sample time.
@@ -81,7 +81,7 @@ fn state_feedback_has_the_triple_pole() {
         while run.time() < 0.15 {
             let q = 60.0 * run.time();
             let expected = 1e-3 * (1.0 + q + q * q / 2.0) * f64::exp(-q);
-            largest = largest.max((get(&run.plant, "position") - expected).abs());
+            largest = largest.max((get(&*run.plant, "position") - expected).abs());
             run.step();
         }
         largest
@@ -102,16 +102,16 @@ fn error_of_the_velocity_decays_with_the_squared_flux() {
     let mut run = BallLoop::new(Sinusoids, 0.0, &[], &settings);
     let (mut exponent, mut initial) = (0.0, None);
     while run.time() < 0.025 - 1e-9 {
-        let (flux, velocity) = (get(&run.plant, "flux"), get(&run.plant, "velocity"));
+        let (flux, velocity) = (get(&*run.plant, "flux"), get(&*run.plant, "velocity"));
         run.step();
-        let error = get(&run.controller, "estimate.velocity") - velocity;
+        let error = get(&*run.controller, "estimate.velocity") - velocity;
         let start = *initial.get_or_insert(error);
         assert!((start - 0.05f64).abs() < 1e-15);
         let expected = start * f64::exp(-exponent);
         assert!((error / expected - 1.0).abs() < 1e-3, "{}: {error} {expected}", run.time());
         // Trapezoidal rule over the sample that has just passed.
-        let after = get(&run.plant, "flux");
-        exponent += 200.0 * run.sample_time * 0.5 * (flux * flux + after * after) / carrying_flux().powi(2);
+        let after = get(&*run.plant, "flux");
+        exponent += 200.0 * run.step_size * 0.5 * (flux * flux + after * after) / carrying_flux().powi(2);
     }
 }
 
@@ -135,8 +135,8 @@ fn frozen_offset_biases_the_position_as_its_closed_form_says() {
         let (a0, a1, a2) = (pole.powi(3), 3.0 * pole * pole, 3.0 * pole);
         let estimate = wanted - (a2 * GRAVITY * (square - 1.0) + a1 * velocity) / a0;
         let position = gap - ratio * (gap - estimate + velocity / (rate * square));
-        let found = get(&run.plant, "position");
-        let estimated = get(&run.controller, "estimate.velocity");
+        let found = get(&*run.plant, "position");
+        let estimated = get(&*run.controller, "estimate.velocity");
         // The integrated flux has moved by 1e-7 of itself while the ball settled.
         assert!((estimated - velocity).abs() < 5e-8, "{rate}: {estimated} {velocity}");
         assert!((found - position).abs() < 1e-8, "{rate}: {found} {position}");
@@ -152,10 +152,10 @@ fn applied_voltage_makes_the_order_of_exchange_irrelevant() {
     let mut delayed = BallLoop::new(Sinusoids, 0.05, &[], &settings);
     let voltage =
         LevitatedBall::LABORATORY.resistance * LevitatedBall::LABORATORY.current(0.0, carrying_flux());
-    set(&mut delayed.plant, "voltage", voltage);
+    set(&mut *delayed.plant, "voltage", voltage);
     let mut errors = [0f64; 2];
     while run.time() < 3.0 {
-        let flux = [&run, &delayed].map(|run| get(&run.plant, "flux"));
+        let flux = [&run, &delayed].map(|run| get(&*run.plant, "flux"));
         run.step();
         delayed.step_both_at_once();
         if run.time() > 2.0 {
@@ -175,8 +175,8 @@ fn start_up_hold_lasts_as_long_as_it_should() {
         let mut run = BallLoop::new(Sinusoids, 0.1, &[], &[("observer.startup_hold", hold)]);
         for tick in 0..held + 3 {
             run.step();
-            let moved = get(&run.controller, "observer.flux_offset") != 0.0;
-            let active = get(&run.controller, "observer.active") == 1.0;
+            let moved = get(&*run.controller, "observer.flux_offset") != 0.0;
+            let active = get(&*run.controller, "observer.active") == 1.0;
             assert_eq!(active, tick > held, "{hold} s, tick {tick}");
             assert!(active || !moved, "{hold} s, tick {tick}");
         }

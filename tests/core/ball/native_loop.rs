@@ -1,9 +1,12 @@
 //! The two levitated ball units wired natively, without FMI, as a master in the controller-first order would.
 
+use std::ops::{Deref, DerefMut};
+
 use maglev_fmu::plant::levitated_ball::LevitatedBall;
 use maglev_fmu::signal::BallReference;
 use maglev_fmu::unit::system::BALL;
-use maglev_fmu::unit::{LevitatedBallController, LevitatedBallPlant, Silence, Unit};
+use maglev_fmu::unit::{ClosedLoop, Silence};
+use maglev_fmu_test::closed_loop::closed_loop;
 use maglev_fmu_test::values::{get, reference, set};
 
 /// Numbers of items of enumerations.
@@ -18,20 +21,29 @@ pub fn carrying_flux() -> f64 {
     LevitatedBall::LABORATORY.equilibrium_flux()
 }
 
-/// Plant and controller after initialisation with some parameters.
+/// The loop on one of the paper's references.
 pub struct BallLoop {
-    pub plant: LevitatedBallPlant,
-    pub controller: LevitatedBallController,
+    units: ClosedLoop,
     pub signal: BallReference,
-    pub sample_time: f64,
     pub ticks: u32,
     /// Added to the voltage that acts [V].
     pub voltage_offset: f64,
     /// Added to the reference [m].
     pub reference_offset: f64,
-    wires: Vec<(usize, usize)>,
-    voltage: [usize; 2],
-    wanted: usize,
+}
+
+impl Deref for BallLoop {
+    type Target = ClosedLoop;
+
+    fn deref(&self) -> &ClosedLoop {
+        &self.units
+    }
+}
+
+impl DerefMut for BallLoop {
+    fn deref_mut(&mut self) -> &mut ClosedLoop {
+        &mut self.units
+    }
 }
 
 impl BallLoop {
@@ -42,74 +54,61 @@ impl BallLoop {
         plant_values: &[(&str, f64)],
         controller_values: &[(&str, f64)],
     ) -> Self {
-        let mut plant = LevitatedBallPlant::new();
-        let mut controller = LevitatedBallController::new();
-        set(&mut controller, "controller.reference_filter", signal.filter_rate());
-        set(&mut controller, "observer.initial.flux", (1.0 - offset) * carrying_flux());
-        plant_values.iter().for_each(|(name, value)| set(&mut plant, name, *value));
-        controller_values.iter().for_each(|(name, value)| set(&mut controller, name, *value));
-        plant.initialise(0.0).unwrap();
-        controller.initialise(0.0).unwrap();
-        let wires =
-            BALL.sensing.iter().map(|(from, to)| (reference(&plant, from), reference(&controller, to)));
-        Self {
-            signal,
-            sample_time: get(&controller, "sample_time"),
-            ticks: 0,
-            voltage_offset: 0.0,
-            reference_offset: 0.0,
-            wires: wires.collect(),
-            voltage: [reference(&controller, "voltage"), reference(&plant, "voltage")],
-            wanted: reference(&controller, "reference"),
-            plant,
-            controller,
-        }
+        let start = [
+            ("controller.reference_filter", signal.filter_rate()),
+            ("observer.initial.flux", (1.0 - offset) * carrying_flux()),
+        ];
+        let units = closed_loop(&BALL, plant_values, &[&start, controller_values].concat());
+        Self { units, signal, ticks: 0, voltage_offset: 0.0, reference_offset: 0.0 }
     }
 
     /// The controller ticks, then the plant moves on.
     pub fn step(&mut self) {
-        self.step_controller();
+        self.tick();
         self.pass_voltage();
-        self.plant.advance(self.sample_time, &mut Silence).unwrap();
-        self.ticks += 1;
+        self.move_plant();
     }
 
     /// Both move on with what the other put out before.
     pub fn step_both_at_once(&mut self) {
-        self.step_controller();
-        self.plant.advance(self.sample_time, &mut Silence).unwrap();
+        self.tick();
+        self.move_plant();
         self.pass_voltage();
-        self.ticks += 1;
     }
 
-    fn step_controller(&mut self) {
-        for (from, to) in &self.wires {
-            self.controller.values_mut()[*to] = self.plant.values()[*from];
-        }
-        self.controller.values_mut()[self.wanted] = self.signal.at(self.time()) + self.reference_offset;
-        self.controller.advance(self.sample_time, &mut Silence).unwrap();
+    fn tick(&mut self) {
+        let wanted = self.signal.at(self.time()) + self.reference_offset;
+        set(&mut *self.controller, "reference", wanted);
+        self.step_controller().unwrap();
     }
 
     fn pass_voltage(&mut self) {
-        self.plant.values_mut()[self.voltage[1]] =
-            self.controller.values()[self.voltage[0]] + self.voltage_offset;
+        self.actuate();
+        let voltage = get(&*self.plant, "voltage") + self.voltage_offset;
+        set(&mut *self.plant, "voltage", voltage);
+    }
+
+    fn move_plant(&mut self) {
+        let duration = self.step_size;
+        self.plant.advance(duration, &mut Silence).unwrap();
+        self.ticks += 1;
     }
 
     pub fn time(&self) -> f64 {
-        f64::from(self.ticks) * self.sample_time
+        f64::from(self.ticks) * self.step_size
     }
 
     /// Error of the controller's flux at the last tick, as a share of lam0, given the plant's flux then.
     pub fn flux_error(&self, true_flux: f64) -> f64 {
-        (get(&self.controller, "estimate.flux") - true_flux) / carrying_flux()
+        (get(&*self.controller, "estimate.flux") - true_flux) / carrying_flux()
     }
 
     /// Runs until `until` [s] and sums up what happened from `from` [s] on.
     pub fn run(&mut self, from: f64, until: f64) -> Summary {
-        let contact = reference(&self.plant, "contact");
-        let [y, lam] = ["position", "flux"].map(|name| reference(&self.plant, name));
+        let contact = reference(&*self.plant, "contact");
+        let [y, lam] = ["position", "flux"].map(|name| reference(&*self.plant, name));
         let [wanted, estimate] =
-            ["reference.position", "estimate.flux"].map(|name| reference(&self.controller, name));
+            ["reference.position", "estimate.flux"].map(|name| reference(&*self.controller, name));
         let mut summary = Summary::default();
         let (mut squares, mut flux_squares, mut samples) = (0.0, 0.0, 0u32);
         while self.time() < until - 1e-9 {

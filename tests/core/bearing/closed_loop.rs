@@ -1,8 +1,11 @@
 //! Plant and controller units wired natively, sensor included, from every start of the paper's Table 1.
 
+use maglev_fmu::unit::ClosedLoop;
+use maglev_fmu::unit::system::BEARING;
 use maglev_fmu::unit::variable::{Causality, Kind};
 use maglev_fmu::unit::{MagneticBearingController, Silence, Unit};
-use maglev_fmu_test::bearing_loop::{BearingLoop, EXACT, FLUX_CASCADE, KALMAN};
+use maglev_fmu_test::bearing::{EXACT, FLUX_CASCADE, KALMAN};
+use maglev_fmu_test::closed_loop::closed_loop;
 use maglev_fmu_test::values::{get, set};
 use proptest::prelude::*;
 
@@ -16,23 +19,23 @@ const LOW_BIAS: f64 = 1e-4;
 fn starts(
     plant: &[(&'static str, f64)],
     controller: &[(&'static str, f64)],
-) -> impl Iterator<Item = (String, BearingLoop)> {
+) -> impl Iterator<Item = (String, ClosedLoop)> {
     POSITIONS.into_iter().flat_map(move |position| {
         VOLTAGES.map(|voltage| {
             let plant = [plant, &[("initial.position", position)]].concat();
             let controller = [controller, &[("controller.initial_voltage", voltage)]].concat();
-            (format!("{position} m, {voltage} V"), BearingLoop::new(&plant, &controller))
+            (format!("{position} m, {voltage} V"), closed_loop(&BEARING, &plant, &controller))
         })
     })
 }
 
 /// Runs 4 s and asserts |u| <= 150 V; returns the time after which |x1| stays below 1e-5 m \[s\], and the largest
 /// |x1| in the last second \[m\].
-fn settle(run: &mut BearingLoop) -> (f64, f64) {
+fn settle(run: &mut ClosedLoop) -> (f64, f64) {
     let (mut settling_time, mut rest) = (0.0, 0.0f64);
     for tick in 0..4000 {
-        run.step_controller();
-        let (position, voltage) = (get(&run.plant, "position").abs(), get(&run.controller, "voltage"));
+        run.step_controller().unwrap();
+        let (position, voltage) = (get(&*run.plant, "position").abs(), get(&*run.controller, "voltage"));
         assert!(voltage.abs() <= 150.0);
         if position > 1e-5 {
             settling_time = f64::from(tick + 1) * T;
@@ -40,7 +43,7 @@ fn settle(run: &mut BearingLoop) -> (f64, f64) {
         if tick >= 3000 {
             rest = rest.max(position);
         }
-        run.step_plant();
+        run.step_plant().unwrap();
     }
     (settling_time, rest)
 }
@@ -89,12 +92,12 @@ fn largest_flux_error(plant: &[(&'static str, f64)]) -> f64 {
     for law in [1.0, 2.0, 3.0] {
         for (_, mut run) in starts(plant, &[("controller.law", law), ("observer.map", EXACT)]) {
             for tick in 0..10_000 {
-                run.step_controller();
-                let error = (get(&run.controller, "estimate.flux") - get(&run.plant, "flux")).abs();
+                run.step_controller().unwrap();
+                let error = (get(&*run.controller, "estimate.flux") - get(&*run.plant, "flux")).abs();
                 if tick >= 50 {
                     worst = worst.max(error);
                 }
-                run.step_plant();
+                run.step_plant().unwrap();
             }
         }
     }
@@ -119,9 +122,9 @@ fn exact_map_newton_finds_an_unknown_flux() {
 fn first_output_is_the_initial_voltage_for_every_law() {
     for law in 1..=4 {
         for (name, mut run) in starts(&[], &[("controller.law", f64::from(law))]) {
-            run.step_controller();
-            let wanted = get(&run.controller, "controller.initial_voltage");
-            assert_eq!(get(&run.controller, "voltage"), wanted, "{name}");
+            run.step_controller().unwrap();
+            let wanted = get(&*run.controller, "controller.initial_voltage");
+            assert_eq!(get(&*run.controller, "voltage"), wanted, "{name}");
         }
     }
 }

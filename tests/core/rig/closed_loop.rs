@@ -3,9 +3,10 @@
 
 use maglev_fmu::observer::extended_state::{ExtendedState, gains_from_bandwidth};
 use maglev_fmu::observer::extended_state_exact::ExactPredictor;
-use maglev_fmu::unit::Unit;
-use maglev_fmu_test::rig_loop::{
-    APPLIED, CURRENT, DISTURBANCE_REJECTION, EULER, METRES, NONLINEAR, RigLoop, THROUGH_EXTENDED_STATE,
+use maglev_fmu::unit::{ClosedLoop, Silence, system};
+use maglev_fmu_test::closed_loop::closed_loop;
+use maglev_fmu_test::rig::{
+    APPLIED, CURRENT, DISTURBANCE_REJECTION, EULER, METRES, NONLINEAR, THROUGH_EXTENDED_STATE,
 };
 use maglev_fmu_test::values::{get, set};
 use nalgebra::{Complex, Matrix3, Matrix4, Matrix5, Vector2};
@@ -96,11 +97,11 @@ fn sampled_pid_loop_is_as_fast_as_its_integral() {
     assert_near(pid_radius(1.0), 0.99939, 1e-5, "e = y - r");
     assert_near(pid_radius(-1.0), 1.178, 1e-3, "e = r - y");
     // The units' loop decays by that per sample, once the fast poles are over.
-    let mut rig = RigLoop::new(&[], &[]);
-    set(&mut rig.plant, "force", 1e-4);
+    let mut rig = closed_loop(&system::RIG, &[], &[]);
+    set(&mut *rig.plant, "force", 1e-4);
     let mut voltage = || {
-        (0..1000).for_each(|_| rig.step());
-        get(&rig.plant, "sensor_voltage") - SENSOR.voltage(SET_POINT)
+        (0..1000).for_each(|_| rig.step().unwrap());
+        get(&*rig.plant, "sensor_voltage") - SENSOR.voltage(SET_POINT)
     };
     let decay = (voltage() / voltage()).powf(-1e-3);
     assert_near(decay, pid_radius(1.0), 1e-5, "units");
@@ -135,12 +136,12 @@ fn loop_through_the_extended_state_has_the_radius_of_the_reconstruction() {
 
 /// Error of the sensor voltage \[V\] at each sample for 2 s after a force step of 1 m/s2 times the mass.
 fn force_step(controller: &[(&str, f64)]) -> Vec<f64> {
-    let mut rig = RigLoop::new(&[], controller);
-    set(&mut rig.plant, "force", 0.02);
+    let mut rig = closed_loop(&system::RIG, &[], controller);
+    set(&mut *rig.plant, "force", 0.02);
     (0..2000)
         .map(|_| {
-            let error = get(&rig.plant, "sensor_voltage") - SENSOR.voltage(SET_POINT);
-            rig.step();
+            let error = get(&*rig.plant, "sensor_voltage") - SENSOR.voltage(SET_POINT);
+            rig.step().unwrap();
             error
         })
         .collect()
@@ -161,14 +162,14 @@ fn disturbance_rejection_beats_pid_threefold() {
 
 /// Runs a loop for some seconds and checks at each step that all values are finite and the voltage is allowed;
 /// returns whether the ball has touched a stop.
-fn run_finitely(rig: &mut RigLoop, seconds: f64, what: &str) -> bool {
+fn run_finitely(rig: &mut ClosedLoop, seconds: f64, what: &str) -> bool {
     let mut touched = false;
     for _ in 0..(seconds / T) as usize {
-        rig.step();
+        rig.step().unwrap();
         let finite = rig.plant.values().iter().chain(rig.controller.values()).all(|value| value.is_finite());
         assert!(finite, "{what}: {:?} {:?}", rig.plant.values(), rig.controller.values());
-        assert!((0.0..=5.0).contains(&get(&rig.controller, "voltage")), "{what}");
-        touched |= get(&rig.plant, "contact") != 0.0;
+        assert!((0.0..=5.0).contains(&get(&*rig.controller, "voltage")), "{what}");
+        touched |= get(&*rig.plant, "contact") != 0.0;
     }
     touched
 }
@@ -181,7 +182,7 @@ fn input_gain_of_the_paper_loses_the_ball_cleanly() {
             ("controller.input_gain", 1.0),
             ("observer.bandwidth", bandwidth),
         ];
-        let mut rig = RigLoop::new(&[], &controller);
+        let mut rig = closed_loop(&system::RIG, &[], &controller);
         assert!(run_finitely(&mut rig, 2.0, "b0 = 1"), "the ball is still in the air");
     }
 }
@@ -198,20 +199,21 @@ fn every_observer_watches_the_pid_loop() {
     let reference = |k: u32| SENSOR.voltage(SET_POINT) + 0.1 * (6.0 * f64::from(k) * T).sin();
     for choice in all_observers() {
         let limit_cycles = choice[0].1 == NONLINEAR && choice[1].1 == EULER;
-        let mut rig = RigLoop::new(&[], &[&choice[..], &[("observer.voltage_source", APPLIED)]].concat());
+        let mut rig =
+            closed_loop(&system::RIG, &[], &[&choice[..], &[("observer.voltage_source", APPLIED)]].concat());
         let mut worst = [0.0f64; 2];
         for k in 0..3000 {
-            set(&mut rig.controller, "reference", reference(k));
-            let truth = ["position", "velocity"].map(|name| get(&rig.plant, name));
-            rig.step();
+            set(&mut *rig.controller, "reference", reference(k));
+            let truth = ["position", "velocity"].map(|name| get(&*rig.plant, name));
+            rig.step().unwrap();
             let estimate =
-                ["estimate.si.position", "estimate.si.velocity"].map(|name| get(&rig.controller, name));
+                ["estimate.si.position", "estimate.si.velocity"].map(|name| get(&*rig.controller, name));
             for index in 0..2 {
                 worst[index] = worst[index].max((truth[index] - estimate[index]).abs());
             }
         }
-        assert_eq!(get(&rig.plant, "contact"), 0.0);
-        assert_eq!(get(&rig.controller, "observer.restarts"), 0.0, "{choice:?}");
+        assert_eq!(get(&*rig.plant, "contact"), 0.0);
+        assert_eq!(get(&*rig.controller, "observer.restarts"), 0.0, "{choice:?}");
         // b = 1 tells the observer next to nothing: millimetres per second, but for the limit cycle of metres.
         let bound = if limit_cycles { [0.1, 30.0] } else { [5e-4, 2e-2] };
         assert!(worst[0] < bound[0] && worst[1] < bound[1], "{choice:?}: {worst:?}");
@@ -225,7 +227,7 @@ fn every_observer_closes_the_loop_without_a_value_that_is_not_finite() {
         let input_gain = if in_metres { -3705.0 / SENSOR.gain } else { -3705.0 };
         let controller =
             [&THROUGH_EXTENDED_STATE[..2], &[("observer.input_gain", input_gain)], &choice].concat();
-        let mut rig = RigLoop::new(&[("sensor.noise", 1e-4)], &controller);
+        let mut rig = closed_loop(&system::RIG, &[("sensor.noise", 1e-4)], &controller);
         let touched = run_finitely(&mut rig, 2.0, &format!("{choice:?}"));
         if choice[0].1 != NONLINEAR {
             assert!(!touched, "{choice:?}");
@@ -238,9 +240,9 @@ fn diverging_observer_starts_anew_and_is_counted() {
     for form in [1.0, CURRENT] {
         let controller =
             [("observer.discretisation", EULER), ("observer.bandwidth", 5000.0), ("observer.form", form)];
-        let mut rig = RigLoop::new(&[("sensor.noise", 1e-4)], &controller);
+        let mut rig = closed_loop(&system::RIG, &[("sensor.noise", 1e-4)], &controller);
         assert!(!run_finitely(&mut rig, 1.0, "diverging observer"), "the PID does not use the observer");
-        assert!(get(&rig.controller, "observer.restarts") > 1.0);
+        assert!(get(&*rig.controller, "observer.restarts") > 1.0);
     }
 }
 
@@ -248,14 +250,14 @@ fn diverging_observer_starts_anew_and_is_counted() {
 fn pid_catches_the_ball_from_4_to_14_millimetres() {
     // From 16 mm the ball hits the coil first. The output has fallen to 0 by then, so that it comes off and is caught.
     for (start, hits) in [(4e-3, false), (6e-3, false), (12e-3, false), (14e-3, false), (16e-3, true)] {
-        let mut rig = RigLoop::new(&[("initial.position", start)], &[]);
+        let mut rig = closed_loop(&system::RIG, &[("initial.position", start)], &[]);
         let mut closest = f64::MAX;
         for _ in 0..4000 {
-            rig.step();
-            closest = closest.min(get(&rig.plant, "position"));
+            rig.step().unwrap();
+            closest = closest.min(get(&*rig.plant, "position"));
         }
         assert_eq!(closest < 1.01e-3, hits, "from {start} m: {closest} m from the coil");
-        let distance = (get(&rig.plant, "position") - SET_POINT).abs();
+        let distance = (get(&*rig.plant, "position") - SET_POINT).abs();
         assert!(distance < 1e-4, "from {start} m: {distance} m away");
     }
 }
@@ -263,15 +265,15 @@ fn pid_catches_the_ball_from_4_to_14_millimetres() {
 #[test]
 fn edge_of_the_reference_kicks_unless_the_derivative_is_of_the_measurement() {
     let closest = |controller: &[(&str, f64)]| {
-        let mut rig = RigLoop::new(&[], controller);
+        let mut rig = closed_loop(&system::RIG, &[], controller);
         let mut closest = f64::MAX;
         for k in 0..2000 {
             let edge = if k < 500 { 0.1 } else { -0.1 };
-            set(&mut rig.controller, "reference", SENSOR.voltage(SET_POINT) + edge);
-            rig.step();
-            closest = closest.min(get(&rig.plant, "position"));
+            set(&mut *rig.controller, "reference", SENSOR.voltage(SET_POINT) + edge);
+            rig.step().unwrap();
+            closest = closest.min(get(&*rig.plant, "position"));
         }
-        assert!((get(&rig.plant, "position") - SET_POINT + 0.1 / SENSOR.gain).abs() < 5e-4);
+        assert!((get(&*rig.plant, "position") - SET_POINT + 0.1 / SENSOR.gain).abs() < 5e-4);
         closest
     };
     let (kicked, quiet) = (closest(&[]), closest(&[("controller.derivative", 2.0)]));
@@ -282,28 +284,28 @@ fn edge_of_the_reference_kicks_unless_the_derivative_is_of_the_measurement() {
 
 #[test]
 fn law_may_change_while_the_ball_floats() {
-    let mut rig = RigLoop::new(&[], &THROUGH_EXTENDED_STATE);
+    let mut rig = closed_loop(&system::RIG, &[], &THROUGH_EXTENDED_STATE);
     for law in [DISTURBANCE_REJECTION, 1.0, DISTURBANCE_REJECTION, 1.0] {
-        set(&mut rig.controller, "controller.kind", law);
+        set(&mut *rig.controller, "controller.kind", law);
         rig.controller.adopt_parameters();
         assert!(!run_finitely(&mut rig, 0.5, "change of law"));
     }
-    assert!((get(&rig.plant, "position") - SET_POINT).abs() < 1e-5);
+    assert!((get(&*rig.plant, "position") - SET_POINT).abs() < 1e-5);
 }
 
 #[test]
 fn filtered_reference_is_followed_through_the_extended_state() {
     let run = |filter: f64| {
         let controller = [&THROUGH_EXTENDED_STATE[..], &[("controller.reference_filter", filter)]].concat();
-        let mut rig = RigLoop::new(&[], &controller);
-        rig.step();
-        set(&mut rig.controller, "reference", SENSOR.voltage(SET_POINT) + 0.2);
+        let mut rig = closed_loop(&system::RIG, &[], &controller);
+        rig.step().unwrap();
+        set(&mut *rig.controller, "reference", SENSOR.voltage(SET_POINT) + 0.2);
         let mut overshoot = 0.0f64;
         for _ in 0..1000 {
-            rig.step();
-            overshoot = overshoot.max(get(&rig.plant, "sensor_voltage") - SENSOR.voltage(SET_POINT) - 0.2);
+            rig.step().unwrap();
+            overshoot = overshoot.max(get(&*rig.plant, "sensor_voltage") - SENSOR.voltage(SET_POINT) - 0.2);
         }
-        let error = get(&rig.plant, "sensor_voltage") - SENSOR.voltage(SET_POINT) - 0.2;
+        let error = get(&*rig.plant, "sensor_voltage") - SENSOR.voltage(SET_POINT) - 0.2;
         assert!(error.abs() < 1e-4, "{error}");
         overshoot
     };
@@ -318,21 +320,21 @@ fn applied_voltage_makes_the_observer_right_when_both_units_step_at_once() {
     let predictor = ExactPredictor::new(gains_from_bandwidth(300.0), -3705.0, T);
     let difference = |source: f64| {
         let controller = [&THROUGH_EXTENDED_STATE[1..], &[("observer.voltage_source", source)]].concat();
-        let mut rig = RigLoop::new(&[("sensor.noise", 3e-4)], &controller);
+        let mut rig = closed_loop(&system::RIG, &[("sensor.noise", 3e-4)], &controller);
         let mut before = None;
         let mut largest = 0.0f64;
         for _ in 0..2000 {
-            let voltage = get(&rig.controller, "voltage");
-            let measured = get(&rig.plant, "sensor_voltage_measured");
-            rig.step_controller();
+            let voltage = get(&*rig.controller, "voltage");
+            let measured = get(&*rig.plant, "sensor_voltage_measured");
+            rig.step_controller().unwrap();
             let z = ["estimate.position", "estimate.velocity", "estimate.extended"]
-                .map(|name| get(&rig.controller, name));
+                .map(|name| get(&*rig.controller, name));
             if let Some((z_before, measured_before, acted)) = before {
                 let expected = predictor.step(z_before, measured_before, acted);
                 largest = largest.max((expected.velocity - z[1]).abs());
             }
-            set(&mut rig.plant, "voltage", voltage);
-            rig.plant_advance();
+            set(&mut *rig.plant, "voltage", voltage);
+            rig.plant.advance(T, &mut Silence).unwrap();
             let state = ExtendedState { position: z[0], velocity: z[1], extended: z[2] };
             before = Some((state, measured, voltage));
         }

@@ -5,7 +5,9 @@ use maglev_fmu::observer::extended_state::{
     ExtendedState, ExtendedStateModel, LinearInjection, gains_from_bandwidth,
 };
 use maglev_fmu::observer::extended_state_exact::ExactPredictor;
-use maglev_fmu_test::rig_loop::{CURRENT, MATCHED, METRES, NONLINEAR, RUNGE_KUTTA, RigLoop, ZERO};
+use maglev_fmu::unit::system::RIG;
+use maglev_fmu_test::closed_loop::closed_loop;
+use maglev_fmu_test::rig::{CURRENT, MATCHED, METRES, NONLINEAR, RUNGE_KUTTA, ZERO};
 use maglev_fmu_test::values::{get, set};
 
 use super::experiment::{SENSOR, T, data_run, sine_step, table_4};
@@ -75,20 +77,20 @@ fn native_loop_and_observers_match_the_reference() {
 
 /// Rows as in the reference, with the estimates of one observer, from a run through the units.
 fn unit_rows(controller: &[(&str, f64)]) -> Vec<Vec<f64>> {
-    let mut rig = RigLoop::new(&[], controller);
+    let mut rig = closed_loop(&RIG, &[], controller);
     let mut rows = Vec::new();
     for k in 0..4000 {
         let time = f64::from(k) * T;
         let reference = SENSOR.voltage(9e-3) + sine_step(time);
-        set(&mut rig.controller, "reference", reference);
-        let plant = ["position", "velocity", "sensor_voltage"].map(|name| get(&rig.plant, name));
-        rig.step_controller();
+        set(&mut *rig.controller, "reference", reference);
+        let plant = ["position", "velocity", "sensor_voltage"].map(|name| get(&*rig.plant, name));
+        rig.step_controller().unwrap();
         if k % 5 == 0 {
             let controller = ["voltage", "estimate.position", "estimate.velocity", "estimate.extended"]
-                .map(|name| get(&rig.controller, name));
+                .map(|name| get(&*rig.controller, name));
             rows.push([&[time, reference][..], &plant, &controller].concat());
         }
-        rig.step_plant();
+        rig.step_plant().unwrap();
     }
     rows
 }

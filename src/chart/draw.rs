@@ -8,9 +8,8 @@ use plotters::prelude::*;
 
 use super::axis::{decades, decimals, tick};
 use super::points::{extent, visible};
-use super::{FONT, Figure, Panel, Series, Stroke};
+use super::{ChartError, FONT, Figure, Panel, Series, Stroke};
 use crate::causes::with_causes;
-use crate::study::StudyError;
 
 /// Drawing units per px: plotters rounds coordinates to whole units, which shows in curves when a unit is a pixel.
 const FINENESS: u32 = 8;
@@ -46,7 +45,7 @@ fn font(pixels: u32) -> TextStyle<'static> {
 type Drawing<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 
 /// The figure as an SVG document.
-pub fn svg(figure: &Figure) -> Result<String, StudyError> {
+pub fn svg(figure: &Figure) -> Result<String, ChartError> {
     register_font();
     let columns = figure.columns.max(1);
     let rows = figure.panels.len().div_ceil(columns);
@@ -54,7 +53,7 @@ pub fn svg(figure: &Figure) -> Result<String, StudyError> {
     let (wide, high) = (width * FINENESS, height * FINENESS);
     let mut document = String::new();
     draw(figure, columns, rows, SVGBackend::with_string(&mut document, (wide, high)))
-        .map_err(|error| StudyError::Draw { figure: figure.title.clone(), reason: with_causes(&*error) })?;
+        .map_err(|error| ChartError { figure: figure.title.clone(), reason: with_causes(&*error) })?;
     // The view box keeps the drawing units, the size is in px.
     let drawn = format!("width=\"{wide}\" height=\"{high}\"");
     Ok(document.replacen(&drawn, &format!("width=\"{width}\" height=\"{height}\""), 1))

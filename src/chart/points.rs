@@ -19,7 +19,7 @@ pub(super) fn visible(panel: &Panel) -> Vec<Vec<(f64, f64)>> {
         .series
         .iter()
         .map(|series| {
-            let points = thin(series.points.iter().copied().filter(is_drawable).collect());
+            let points = thin(series.points.iter().copied().filter(is_drawable).collect(), RESOLUTION);
             if series.stroke == Stroke::Held { staircase(&points) } else { points }
         })
         .collect()
@@ -31,21 +31,21 @@ fn staircase(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     corners.chain(points.last().copied()).collect()
 }
 
-/// Keeps the smallest and largest point of each of a few hundred bins, in their order.
-fn thin(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
-    if points.len() <= RESOLUTION {
+/// At most `resolution` points: the smallest and the largest of each of half as many bins, in their order, so that no
+/// peak is lost.
+pub fn thin(points: Vec<(f64, f64)>, resolution: usize) -> Vec<(f64, f64)> {
+    if points.len() <= resolution {
         return points;
     }
-    let bin = points.len().div_ceil(RESOLUTION / 2);
+    let bin = points.len().div_ceil(resolution / 2);
     points
         .chunks(bin)
         .flat_map(|chunk| {
             let by_value = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
-            let low = chunk.iter().min_by(by_value).copied();
-            let high = chunk.iter().max_by(by_value).copied();
-            let mut pair = [low, high];
-            pair.sort_by(|a, b| a.map(|point| point.0).partial_cmp(&b.map(|point| point.0)).expect("finite"));
-            pair.into_iter().flatten()
+            let ends = [chunk.iter().min_by(by_value), chunk.iter().max_by(by_value)];
+            let mut ends: Vec<(f64, f64)> = ends.into_iter().flatten().copied().collect();
+            ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+            ends
         })
         .collect()
 }
@@ -68,7 +68,7 @@ mod tests {
         let mut points: Vec<(f64, f64)> = (0..100_000).map(|k| (f64::from(k), 0.0)).collect();
         points[12_345].1 = 7.0;
         points[54_321].1 = -3.0;
-        let thinned = thin(points);
+        let thinned = thin(points, RESOLUTION);
         assert!(thinned.len() <= RESOLUTION + 2);
         assert!(thinned.contains(&(12_345.0, 7.0)) && thinned.contains(&(54_321.0, -3.0)));
         assert!(thinned.windows(2).all(|pair| pair[0].0 <= pair[1].0));

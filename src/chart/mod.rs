@@ -2,10 +2,13 @@
 
 mod axis;
 mod draw;
+mod error;
 mod points;
 mod raster;
 
 pub use draw::svg;
+pub use error::ChartError;
+pub use points::thin;
 pub use raster::png;
 
 /// Family name under which the embedded font is known to both renderers.
@@ -78,7 +81,28 @@ impl Panel {
         self.series.push(series);
         self
     }
+
+    pub fn line(self, label: impl Into<String>, colour: usize, points: impl Points) -> Self {
+        self.with(Series::new(label, colour, Stroke::Solid, points))
+    }
+
+    pub fn dashed(self, label: impl Into<String>, colour: usize, points: impl Points) -> Self {
+        self.with(Series::new(label, colour, Stroke::Dashed, points))
+    }
+
+    pub fn held(self, label: impl Into<String>, colour: usize, points: impl Points) -> Self {
+        self.with(Series::new(label, colour, Stroke::Held, points))
+    }
+
+    pub fn dots(self, label: impl Into<String>, colour: usize, points: impl Points) -> Self {
+        self.with(Series::new(label, colour, Stroke::Dots, points))
+    }
 }
+
+/// What can be drawn: x and y of each point.
+pub trait Points: IntoIterator<Item = (f64, f64)> {}
+
+impl<T: IntoIterator<Item = (f64, f64)>> Points for T {}
 
 /// How a line is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -101,12 +125,7 @@ pub struct Series {
 }
 
 impl Series {
-    pub fn new(
-        label: impl Into<String>,
-        colour: usize,
-        stroke: Stroke,
-        points: impl IntoIterator<Item = (f64, f64)>,
-    ) -> Self {
+    pub fn new(label: impl Into<String>, colour: usize, stroke: Stroke, points: impl Points) -> Self {
         Self { label: label.into(), colour, stroke, points: points.into_iter().collect() }
     }
 }

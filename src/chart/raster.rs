@@ -5,9 +5,8 @@ use std::sync::{Arc, LazyLock};
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree, fontdb};
 
-use super::{FONT, Figure};
+use super::{ChartError, FONT, Figure};
 use crate::causes::with_causes;
-use crate::study::StudyError;
 
 /// Pixels per SVG unit, so that the picture is sharp on paper and on dense screens.
 const SCALE: f32 = 2.0;
@@ -21,8 +20,8 @@ static FONTS: LazyLock<Arc<fontdb::Database>> = LazyLock::new(|| {
 });
 
 /// The figure's SVG as a PNG file.
-pub fn png(figure: &Figure, svg: &str) -> Result<Vec<u8>, StudyError> {
-    let fail = |reason: String| StudyError::Draw { figure: figure.title.clone(), reason };
+pub fn png(figure: &Figure, svg: &str) -> Result<Vec<u8>, ChartError> {
+    let fail = |reason: String| ChartError { figure: figure.title.clone(), reason };
     let options = Options { font_family: FONT.to_owned(), fontdb: FONTS.clone(), ..Options::default() };
     let tree = Tree::from_str(svg, &options).map_err(|error| fail(with_causes(&error)))?;
     let size = tree.size().to_int_size().scale_by(SCALE).ok_or_else(|| fail("empty picture".to_owned()))?;
