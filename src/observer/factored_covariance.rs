@@ -93,8 +93,9 @@ impl<const N: usize> FactoredCovariance<N> {
     #[inline]
     pub fn propagate(&mut self, slope: &[[f64; N]; N], noise: &Self) {
         // P = [F U, U_Q] diag(D, D_Q) [F U, U_Q]^T: the rows are made orthogonal, the last one first.
-        let mut own: [[f64; N]; N] =
-            from_fn(|row| from_fn(|column| sum((0..=column).map(|k| slope[row][k] * self.factor(k, column)))));
+        let mut own: [[f64; N]; N] = from_fn(|row| {
+            from_fn(|column| sum((0..=column).map(|k| slope[row][k] * self.factor(k, column))))
+        });
         let mut added: [[f64; N]; N] =
             from_fn(|row| from_fn(|column| if row > column { 0.0 } else { noise.factor(row, column) }));
         let weights = self.diagonal;
@@ -102,7 +103,8 @@ impl<const N: usize> FactoredCovariance<N> {
             let weighted: [f64; N] = from_fn(|k| weights[k] * own[last][k]);
             let weighted_noise: [f64; N] = from_fn(|k| noise.diagonal[k] * added[last][k]);
             let product = |own: &[f64; N], added: &[f64; N]| {
-                sum((0..N).map(|k| weighted[k] * own[k])) + sum((last..N).map(|k| weighted_noise[k] * added[k]))
+                sum((0..N).map(|k| weighted[k] * own[k]))
+                    + sum((last..N).map(|k| weighted_noise[k] * added[k]))
             };
             let variance = product(&own[last], &added[last]);
             self.diagonal[last] = variance;
@@ -187,7 +189,7 @@ impl<const N: usize> FactoredCovariance<N> {
 
 /// Sum of at least one term, without adding to 0.
 #[inline(always)]
-fn sum(mut terms: impl Iterator<Item = f64>) -> f64 {
+pub(super) fn sum(mut terms: impl Iterator<Item = f64>) -> f64 {
     let first = terms.next().unwrap_or(0.0);
     terms.fold(first, |sum, term| sum + term)
 }

@@ -40,11 +40,10 @@
 
 use super::Estimate;
 use super::kalman_filter::{Innovation, KalmanFilter};
-use super::saved_count::count_up_to;
+use super::sample_window::{MAX_WINDOW, SampleWindow};
 use crate::plant::magnetic_bearing::{ForceEffect, MagneticBearing, Map, State};
 use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
-use serde_big_array::BigArray;
 
 /// Variances of the initial position \[m2\], velocity \[m2/s2\] and flux \[Wb2\].
 pub const INITIAL_VARIANCES: [f64; 3] = [1e-4, 1e-4, 1e-2];
@@ -57,7 +56,7 @@ const NOISE_LIMITS: (f64, f64) = (1e-18, 1e100);
 const GATE: f64 = 6.0;
 
 /// Samples of the beginning that are kept, and the fewest over which the filter runs again.
-const BEGINNING: usize = 64;
+const BEGINNING: usize = MAX_WINDOW;
 const SHORTEST_BEGINNING: usize = 8;
 
 /// Uncertainty of the flux, relative to its size, up to which the beginning is linearised anew.
@@ -83,14 +82,8 @@ pub struct KalmanObserver {
     filter: KalmanFilter<3>,
     /// Where the filter starts, again when a sample yields nothing finite.
     initial: State,
-    /// First outputs \[m\] and the voltage \[V\] that acted before each.
-    #[serde(with = "BigArray")]
-    positions: [f64; BEGINNING],
-    #[serde(with = "BigArray")]
-    voltages: [f64; BEGINNING],
-    /// Samples since the start, counted up to [`BEGINNING`].
-    #[serde(deserialize_with = "count_up_to::<_, BEGINNING>")]
-    samples: usize,
+    /// The first samples, up to [`BEGINNING`]: outputs \[m\] and voltages \[V\].
+    beginning: SampleWindow,
     /// Last estimate, kept when a sample yields nothing finite.
     estimate: State,
 }
@@ -101,9 +94,7 @@ impl KalmanObserver {
         Self {
             filter: KalmanFilter::expecting(initial),
             initial,
-            positions: [0.0; BEGINNING],
-            voltages: [0.0; BEGINNING],
-            samples: 0,
+            beginning: SampleWindow::EMPTY,
             estimate: initial,
         }
     }
@@ -130,27 +121,26 @@ impl KalmanObserver {
     #[inline(never)]
     pub fn update(&mut self, settings: &KalmanSettings, position: f64, applied_voltage: f64) -> Estimate {
         let mut filter = self.filter;
-        if self.samples > 0 {
+        if self.beginning.len() > 0 {
             filter.predict_bearing(settings, applied_voltage);
         }
         let innovation = filter.correct_position(settings, position);
         let residual = innovation.value.abs().min(f64::MAX);
         if !filter.is_valid() {
             self.filter = KalmanFilter::expecting(self.initial);
-            self.samples = 0;
+            self.beginning = SampleWindow::EMPTY;
             return Estimate { state: self.estimate, residual, iterations: 1, converged: false };
         }
         self.filter = filter;
-        if self.samples < BEGINNING {
-            self.positions[self.samples] = position;
-            self.voltages[self.samples] = applied_voltage;
-            self.samples += 1;
-            if self.samples >= SHORTEST_BEGINNING && self.samples.is_power_of_two() {
+        if self.beginning.len() < BEGINNING {
+            self.beginning.push(position, applied_voltage);
+            let samples = self.beginning.len();
+            if samples >= SHORTEST_BEGINNING && samples.is_power_of_two() {
                 self.begin_again(settings);
             }
         }
         let fits = innovation.value * innovation.value <= GATE * GATE * innovation.variance;
-        let converged = fits && self.samples >= 3;
+        let converged = fits && self.beginning.len() >= 3;
         self.estimate = estimate(&self.filter);
         Estimate { state: self.estimate, residual, iterations: 1, converged }
     }
@@ -159,8 +149,7 @@ impl KalmanObserver {
     #[cold]
     fn begin_again(&mut self, settings: &KalmanSettings) {
         let KalmanSettings { sample_time, flux_noise, .. } = *settings;
-        let positions = &self.positions[..self.samples];
-        let voltages = &self.voltages[1..self.samples];
+        let (positions, voltages) = (self.beginning.measurements(), self.beginning.inputs());
         let latest = self.filter.state[2];
         let first = latest - sample_time * voltages.iter().sum::<f64>();
         let variance =

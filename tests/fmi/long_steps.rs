@@ -21,7 +21,10 @@ impl Component {
         let text = self.recorder.messages().last().map(|message| message.text.clone()).unwrap_or_default();
         self.assert_refused(status, said);
         assert_eq!(self.get("time"), 0.0);
-        let number = text.split("expected at most ").nth(1).and_then(|rest| rest.split(' ').find(|word| word.starts_with(char::is_numeric)));
+        let number = text
+            .split("expected at most ")
+            .nth(1)
+            .and_then(|rest| rest.split(' ').find(|word| word.starts_with(char::is_numeric)));
         number.and_then(|number| number.parse().ok()).expect("a number of seconds")
     }
 }
