@@ -96,6 +96,12 @@ fn main() {
             &readings,
         ),
         ("nonlinear, exact (frozen gains)", controller(&[kind, (discretisation, 1.0)]), &readings),
+        ("kalman", controller(&[("observer.kind", 3.0)]), &readings),
+        (
+            "windowed Newton, 12 samples",
+            controller(&[("observer.kind", 4.0), ("observer.window", 12.0)]),
+            &readings,
+        ),
         ("plant", plant(), &voltages),
     ];
     let mut candidates: Vec<Candidate> = units
@@ -132,5 +138,7 @@ fn main() {
     verdict("linear, exact, PID", medians[0], "ns", Some(80.0), None);
     verdict("linear, exact, disturbance rejection", medians[1], "ns", Some(80.0), None);
     verdict("nonlinear, Runge-Kutta", medians[3], "ns", Some(300.0), None);
-    verdict("observer alone: linear, Runge-Kutta", medians[8], "ns", Some(50.0), None);
+    verdict("observer alone: linear, Runge-Kutta", medians[10], "ns", Some(50.0), None);
+    verdict("kalman", medians[6], "ns", Some(150.0), None);
+    verdict("windowed Newton, 12 samples", medians[7], "ns", Some(3000.0), None);
 }

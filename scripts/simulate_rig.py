@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Maglev rig with its extended state observers: plant and controller FMU, stepped sample by sample with fmpy.
+"""Maglev rig with its observers: plant and controller FMU, stepped sample by sample with fmpy.
 
 cargo run --release -- build
 python scripts/simulate_rig.py --observer nonlinear --force 0.02 --out rig.png
@@ -165,7 +165,7 @@ def metric_input_gain(controller: Fmu) -> float:
 
 def arguments() -> argparse.Namespace:
     parser = command_line.parser(__doc__)
-    parser.add_argument("--observer", help="linear or nonlinear; the FMU's start value, linear, if not given")
+    parser.add_argument("--observer", help="item of observer.kind; the FMU's start value, linear, if not given")
     parser.add_argument("--control", default="pid", help="pid, or disturbance_rejection through the extended state")
     parser.add_argument(
         "--parameters", type=Path, metavar="FILE", help="parameter file for the controller, of maglev-fmu tune"
@@ -197,7 +197,7 @@ def main() -> None:
             initialize(plant, controller, options)
             trajectory = simulate(plant, controller, options)
             observer = controller.get("observer.kind")
-            title = f"Maglev rig, {observer} extended state observer, {options.control}, FMI {options.fmi}"
+            title = f"Maglev rig, {observer} observer, {options.control}, FMI {options.fmi}"
             figure = draw(trajectory, plant, metric_input_gain(controller), title)
     command_line.finish(summary(trajectory), figure, options)
 

@@ -27,7 +27,7 @@ use thiserror::Error;
 
 const MARK: [u8; 8] = *b"maglevFS";
 /// To be raised whenever a unit's fields or [`Life`] change.
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 
 const TOKEN: core::ops::Range<usize> = 16..54;
 const CHECKSUM: core::ops::Range<usize> = 54..58;

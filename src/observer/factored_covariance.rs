@@ -1,146 +1,211 @@
-//! Covariance of (position, velocity, flux) as P = U D U^T, U unit upper triangular and D diagonal.
+//! Covariance of N states as P = U D U^T, U unit upper triangular and D diagonal.
 //!
 //! The factors are updated, never P: every new diagonal element is a sum or a quotient of non-negative numbers, so
 //! P cannot lose its symmetry or its sign to round-off, whatever the ratio of P to the measurement's variance.
 //!
 //! G. J. Bierman, *Factorization Methods for Discrete Sequential Estimation*, 1977: chapter V for the measurement,
-//! chapter VI and Agee-Turner's rank-one update for the process noise. No square root is needed.
+//! chapter VI for the time update (modified weighted Gram-Schmidt, Thornton) and Agee-Turner's rank-one update for the
+//! process noise. No square root is needed.
 
-use crate::plant::magnetic_bearing::ForceEffect;
-use nalgebra::Matrix3;
+use core::array::from_fn;
+
+use nalgebra::SMatrix;
 use serde::{Deserialize, Serialize};
+use serde_big_array::{Array, BigArray};
 
 /// U and D.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct FactoredCovariance {
-    /// Diagonal of D, in m2, m2/s2, Wb2.
-    diagonal: [f64; 3],
-    /// U12 \[s\]
-    position_velocity: f64,
-    /// U13 \[m/Wb\]
-    position_flux: f64,
-    /// U23 \[m/(s Wb)\]
-    velocity_flux: f64,
+pub struct FactoredCovariance<const N: usize> {
+    /// Diagonal of D, in the squared units of the states.
+    #[serde(with = "BigArray")]
+    diagonal: [f64; N],
+    /// Rows of U, of which only what is right of the diagonal is used.
+    #[serde(with = "BigArray")]
+    unit: [Array<f64, N>; N],
 }
 
-/// What a position measurement is worth.
+/// What a measurement of the first state is worth.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PositionGain {
-    /// Weights of the innovation in position \[1\], velocity \[1/s\] and flux \[Wb/m\].
-    pub weights: [f64; 3],
-    /// Variance of the innovation, P11 + R \[m2\].
+pub struct Gain<const N: usize> {
+    /// Weights of the innovation in the states; the first is a number without unit.
+    pub weights: [f64; N],
+    /// Variance of the innovation, P11 + R.
     pub innovation_variance: f64,
 }
 
-impl FactoredCovariance {
-    /// Independent components with the given variances, in m2, m2/s2, Wb2.
-    pub fn diagonal(variances: [f64; 3]) -> Self {
-        Self { diagonal: variances, position_velocity: 0.0, position_flux: 0.0, velocity_flux: 0.0 }
+impl<const N: usize> FactoredCovariance<N> {
+    /// Independent states with the given variances.
+    pub const fn from_variances(variances: [f64; N]) -> Self {
+        Self { diagonal: variances, unit: [Array([0.0; N]); N] }
+    }
+
+    /// From D and the part of U right of its diagonal.
+    #[inline]
+    pub fn from_factors(diagonal: [f64; N], unit: [[f64; N]; N]) -> Self {
+        Self { diagonal, unit: unit.map(Array) }
     }
 
     /// Whether all factors are finite and no variance is negative.
     pub fn is_valid(&self) -> bool {
+        let upper = (0..N).flat_map(|row| (row + 1..N).map(move |column| self.unit[row][column]));
         self.diagonal.iter().all(|variance| variance.is_finite() && *variance >= 0.0)
-            && (self.position_velocity + self.position_flux + self.velocity_flux).is_finite()
+            && upper.sum::<f64>().is_finite()
+    }
+
+    /// Element of U.
+    #[inline(always)]
+    fn factor(&self, row: usize, column: usize) -> f64 {
+        if row == column { 1.0 } else { self.unit[row][column] }
     }
 
     /// P = U D U^T
-    pub fn matrix(&self) -> Matrix3<f64> {
-        let (p, q, r) = (self.position_velocity, self.position_flux, self.velocity_flux);
-        let [_, second, third] = self.diagonal;
-        let (p12, p13, p23) = (second * p + third * q * r, third * q, third * r);
-        let [p11, p22, p33] = self.variances();
-        Matrix3::new(p11, p12, p13, p12, p22, p23, p13, p23, p33)
+    pub fn matrix(&self) -> SMatrix<f64, N, N> {
+        SMatrix::from_fn(|row, column| {
+            let (row, column) = (row.min(column), row.max(column));
+            sum((column..N).map(|k| self.diagonal[k] * self.factor(row, k) * self.factor(column, k)))
+        })
     }
 
-    /// P11, P22, P33 in m2, m2/s2, Wb2.
+    /// Diagonal of P.
     #[inline]
-    pub fn variances(&self) -> [f64; 3] {
-        let (p, q, r) = (self.position_velocity, self.position_flux, self.velocity_flux);
-        let [first, second, third] = self.diagonal;
-        [first + second * p * p + third * q * q, second + third * r * r, third]
+    pub fn variances(&self) -> [f64; N] {
+        from_fn(|row| sum((row..N).map(|k| self.diagonal[k] * self.factor(row, k) * self.factor(row, k))))
     }
 
-    /// P33 \[Wb2\]; U has ones on its diagonal, so it is D33.
+    /// Last element of P: U has ones on its diagonal, so it is that of D.
     #[inline]
-    pub fn flux_variance(&self) -> f64 {
-        self.diagonal[2]
+    pub fn last_variance(&self) -> f64 {
+        self.diagonal[N - 1]
     }
 
-    /// P := F P F^T with the Jacobian F of a step over `duration` \[s\] with the given force effect slope. F is
-    /// itself unit upper triangular: U := F U, and D stands.
+    /// P := F P F^T with F unit upper triangular, of which the part right of the diagonal is given: U := F U, and D stands.
     #[inline]
-    pub fn advance(&mut self, slope: ForceEffect, duration: f64) {
-        self.position_flux += duration * self.velocity_flux + slope.position;
-        self.position_velocity += duration;
-        self.velocity_flux += slope.velocity;
+    pub fn advance(&mut self, slope: [[f64; N]; N]) {
+        for column in 1..N {
+            for row in 0..column {
+                let terms = (row + 1..=column).map(|k| slope[row][k] * self.factor(k, column));
+                self.unit[row][column] += sum(terms);
+            }
+        }
     }
 
-    /// P := P + diag(0, 0, `variance`), `variance` in Wb2.
+    /// P := F P F^T + Q for any F and a Q in factors.
     #[inline]
-    pub fn add_flux_noise(&mut self, variance: f64) {
+    pub fn propagate(&mut self, slope: &[[f64; N]; N], noise: &Self) {
+        // P = [F U, U_Q] diag(D, D_Q) [F U, U_Q]^T: the rows are made orthogonal, the last one first.
+        let mut own: [[f64; N]; N] = from_fn(|row| {
+            from_fn(|column| sum((0..=column).map(|k| slope[row][k] * self.factor(k, column))))
+        });
+        let mut added: [[f64; N]; N] =
+            from_fn(|row| from_fn(|column| if row > column { 0.0 } else { noise.factor(row, column) }));
+        let weights = self.diagonal;
+        for last in (0..N).rev() {
+            let weighted: [f64; N] = from_fn(|k| weights[k] * own[last][k]);
+            let weighted_noise: [f64; N] = from_fn(|k| noise.diagonal[k] * added[last][k]);
+            let product = |own: &[f64; N], added: &[f64; N]| {
+                sum((0..N).map(|k| weighted[k] * own[k]))
+                    + sum((last..N).map(|k| weighted_noise[k] * added[k]))
+            };
+            let variance = product(&own[last], &added[last]);
+            self.diagonal[last] = variance;
+            // A state that is known for certain depends on no other.
+            let inverse = if variance > 0.0 { 1.0 / variance } else { 0.0 };
+            for row in 0..last {
+                let factor = product(&own[row], &added[row]) * inverse;
+                self.unit[row][last] = factor;
+                for k in 0..N {
+                    own[row][k] -= factor * own[last][k];
+                    added[row][k] -= factor * added[last][k];
+                }
+            }
+        }
+    }
+
+    /// P := P + diag(0, .., 0, `variance`)
+    #[inline]
+    pub fn add_noise_to_last(&mut self, variance: f64) {
         if variance <= 0.0 {
             return;
         }
-        let third = self.diagonal[2];
-        let kept = third / (third + variance);
-        // What the flux's own share of P + variance e3 e3^T leaves is again of rank one.
-        let rest = ForceEffect { position: self.position_flux, velocity: self.velocity_flux };
-        self.diagonal[2] = third + variance;
-        self.position_flux *= kept;
-        self.velocity_flux *= kept;
-        self.add_force_noise(rest, variance * kept);
-    }
-
-    /// P := P + `variance` g g^T with g = (position, velocity, 0) of `direction`.
-    #[inline]
-    pub fn add_force_noise(&mut self, direction: ForceEffect, variance: f64) {
-        let [first, second, third] = self.diagonal;
-        let addition = variance * direction.velocity * direction.velocity;
-        let position = direction.position - direction.velocity * self.position_velocity;
-        let (mut kept, sum) = (1.0, second + addition);
-        if addition > 0.0 {
-            kept = second / sum;
-            self.position_velocity += variance * direction.velocity / sum * position;
+        let last = self.diagonal[N - 1];
+        let kept = last / (last + variance);
+        // What the last state's own share of P + variance e e^T leaves is again of rank one.
+        let rest: [f64; N] = from_fn(|row| if row + 1 < N { self.unit[row][N - 1] } else { 0.0 });
+        self.diagonal[N - 1] = last + variance;
+        for row in 0..N - 1 {
+            self.unit[row][N - 1] *= kept;
         }
-        self.diagonal = [first + variance * kept * position * position, sum, third];
+        self.add_noise(rest, variance * kept);
     }
 
-    /// P := (I - K h^T) P for a measurement of the position with `variance` R > 0 \[m2\]; returns K.
+    /// P := P + `variance` g g^T with g = `direction`.
     #[inline]
-    pub fn measure_position(&mut self, variance: f64) -> PositionGain {
-        let [first, second, third] = self.diagonal;
-        let (p, q, r) = (self.position_velocity, self.position_flux, self.velocity_flux);
-        let (second_p, third_q) = (second * p, third * q);
-        // Innovation variance from the first one, two and three columns of U.
-        let one = variance + first;
-        let two = one + p * second_p;
-        let three = two + q * third_q;
-        let (kept_first, kept_second, kept_third) = (variance / one, one / two, two / three);
-        self.diagonal = [first * kept_first, second * kept_second, third * kept_third];
-        // Without cancellation also for R far below P11: 1 - P11 / (P11 + R) is R / (P11 + R).
-        self.position_velocity = p * kept_first;
-        self.position_flux = q * (variance / two);
-        self.velocity_flux = r - second_p * q / two;
-        let weights = [(three - variance) / three, (second_p + r * third_q) / three, third_q / three];
-        PositionGain { weights, innovation_variance: three }
+    pub fn add_noise(&mut self, mut direction: [f64; N], mut variance: f64) {
+        for column in (0..N).rev() {
+            let along = direction[column];
+            let before = self.diagonal[column];
+            let addition = variance * along * along;
+            let after = before + addition;
+            self.diagonal[column] = after;
+            for row in 0..column {
+                direction[row] -= along * self.unit[row][column];
+            }
+            if addition > 0.0 {
+                for row in 0..column {
+                    self.unit[row][column] += variance * along / after * direction[row];
+                }
+                variance *= before / after;
+            }
+        }
     }
+
+    /// P := (I - K h^T) P for a measurement of the first state with `variance` R > 0; returns K.
+    #[inline]
+    pub fn measurement_update(&mut self, variance: f64) -> Gain<N> {
+        // Innovation variance from the first columns of U, one more each time.
+        let mut total = variance;
+        let mut weights = [0.0; N];
+        for column in 0..N {
+            let element = self.factor(0, column);
+            let weighted = self.diagonal[column] * element;
+            let before = total;
+            total += element * weighted;
+            self.diagonal[column] *= before / total;
+            if column > 0 {
+                // Without cancellation also for R far below P11: 1 - P11 / (P11 + R) is R / (P11 + R).
+                self.unit[0][column] = element * (variance / before);
+            }
+            for row in 1..column {
+                let old = self.unit[row][column];
+                self.unit[row][column] = old - weights[row] * element / before;
+                weights[row] += old * weighted;
+            }
+            weights[column] = weighted;
+        }
+        weights[0] = total - variance;
+        Gain { weights: weights.map(|weight| weight / total), innovation_variance: total }
+    }
+}
+
+/// Sum of at least one term, without adding to 0.
+#[inline(always)]
+pub(super) fn sum(mut terms: impl Iterator<Item = f64>) -> f64 {
+    let first = terms.next().unwrap_or(0.0);
+    terms.fold(first, |sum, term| sum + term)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::Vector3;
+    use nalgebra::{Matrix3, Vector3};
     use proptest::prelude::*;
 
     /// Factors of very different sizes.
-    fn covariance() -> impl Strategy<Value = FactoredCovariance> {
+    fn covariance() -> impl Strategy<Value = FactoredCovariance<3>> {
         ([-12.0..0.0f64, -12.0..0.0f64, -12.0..0.0f64], [-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64]).prop_map(
-            |(exponents, [p, q, r])| FactoredCovariance {
-                diagonal: exponents.map(|exponent| libm::pow(10.0, exponent)),
-                position_velocity: p,
-                position_flux: q,
-                velocity_flux: r,
+            |(exponents, [p, q, r])| {
+                let diagonal = exponents.map(|exponent| libm::pow(10.0, exponent));
+                FactoredCovariance::from_factors(diagonal, [[0.0, p, q], [0.0, 0.0, r], [0.0; 3]])
             },
         )
     }
@@ -160,23 +225,25 @@ mod tests {
             let absolute = dense.abs();
 
             let mut moved = covariance;
-            moved.advance(ForceEffect { velocity, position }, 1e-3);
+            moved.advance([[0.0, 1e-3, position], [0.0, 0.0, velocity], [0.0; 3]]);
             let f = Matrix3::new(1.0, 1e-3, position, 0.0, 1.0, velocity, 0.0, 0.0, 1.0);
             prop_assert!(deviation(moved.matrix(), f * dense * f.transpose(), f * absolute * f.transpose()) < 1e-12);
 
             let mut noisy = covariance;
-            noisy.add_flux_noise(variance);
+            noisy.add_noise_to_last(variance);
             let noise = Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, variance));
             prop_assert!(deviation(noisy.matrix(), dense + noise, absolute + noise) < 1e-12);
 
-            let mut pushed = covariance;
-            pushed.add_force_noise(ForceEffect { velocity, position }, variance);
-            let g = Vector3::new(position, velocity, 0.0);
-            let push = g * g.transpose() * variance;
-            prop_assert!(deviation(pushed.matrix(), dense + push, absolute + push) < 1e-12);
+            for third in [0.0, 0.5] {
+                let mut shaken = covariance;
+                shaken.add_noise([position, velocity, third], variance);
+                let g = Vector3::new(position, velocity, third);
+                let noise = g * g.transpose() * variance;
+                prop_assert!(deviation(shaken.matrix(), dense + noise, absolute + noise) < 1e-12);
+            }
 
             let mut measured = covariance;
-            let gain = measured.measure_position(variance);
+            let gain = measured.measurement_update(variance);
             // Joseph's form; h = (1, 0, 0).
             let k = dense.column(0) / (dense[(0, 0)] + variance);
             let h = Vector3::new(1.0, 0.0, 0.0);
@@ -192,14 +259,59 @@ mod tests {
             }
             prop_assert!(measured.is_valid());
         }
+
+        #[test]
+        fn propagation_is_that_of_the_dense_covariance(
+            covariance in covariance(), noise in covariance(),
+            slope in proptest::array::uniform3(proptest::array::uniform3(-2.0..2.0f64)),
+        ) {
+            let f = Matrix3::from_fn(|row, column| slope[row][column]);
+            let mut moved = covariance;
+            moved.propagate(&slope, &noise);
+            let expected = f * covariance.matrix() * f.transpose() + noise.matrix();
+            let terms = f.abs() * covariance.matrix().abs() * f.abs().transpose() + noise.matrix().abs();
+            let spread = terms.diagonal().map(libm::sqrt);
+            let bound = spread * spread.transpose();
+            prop_assert!(deviation(moved.matrix(), expected, bound) < 1e-12);
+            prop_assert!(moved.is_valid());
+        }
+
+        #[test]
+        fn propagation_without_noise_is_an_advance(covariance in covariance(), first in -1.0..1.0f64) {
+            let (mut advanced, mut propagated) = (covariance, covariance);
+            advanced.advance([[0.0, 1e-3, first], [0.0, 0.0, 0.3], [0.0; 3]]);
+            let slope = [[1.0, 1e-3, first], [0.0, 1.0, 0.3], [0.0, 0.0, 1.0]];
+            propagated.propagate(&slope, &FactoredCovariance::from_variances([0.0; 3]));
+            let spread = Vector3::from(advanced.variances()).map(libm::sqrt);
+            prop_assert!(deviation(propagated.matrix(), advanced.matrix(), spread * spread.transpose()) < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_state_that_is_known_stays_known() {
+        // The third state has neither a variance nor noise: what is left is the covariance of two states.
+        let mut covariance = FactoredCovariance::from_variances([1e-6, 1e-4, 0.0]);
+        let mut smaller = FactoredCovariance::from_variances([1e-6, 1e-4]);
+        for _ in 0..100 {
+            let slope = [[1.001, 1e-3, 5e-7], [2.2, 1.001, 1e-3], [0.0, 0.0, 1.0]];
+            covariance.propagate(&slope, &FactoredCovariance::from_variances([0.0; 3]));
+            smaller.propagate(&[[1.001, 1e-3], [2.2, 1.001]], &FactoredCovariance::from_variances([0.0; 2]));
+            let gain = covariance.measurement_update(1e-10);
+            let expected = smaller.measurement_update(1e-10);
+            assert_eq!((gain.weights[2], covariance.last_variance()), (0.0, 0.0));
+            for (weight, expected) in gain.weights.iter().zip(expected.weights) {
+                assert!((weight - expected).abs() <= 1e-12 * expected.abs());
+            }
+            assert!(covariance.is_valid());
+        }
     }
 
     #[test]
     fn repeated_measurements_average() {
         // n measurements of the same position leave the variance 1 / (1 / P + n / R), here over 30 decades.
-        let mut covariance = FactoredCovariance::diagonal([1e6, 1.0, 1.0]);
+        let mut covariance = FactoredCovariance::from_variances([1e6, 1.0, 1.0]);
         for _ in 0..1000 {
-            covariance.measure_position(1e-24);
+            covariance.measurement_update(1e-24);
         }
         let expected = 1e-27;
         assert!((covariance.matrix()[(0, 0)] - expected).abs() < 1e-12 * expected);

@@ -39,12 +39,11 @@
 //! filter trusts its model too much (84 % in the second row for 0 and 1e-7, none from 1e-6 on).
 
 use super::Estimate;
-use super::factored_covariance::FactoredCovariance;
-use super::saved_count::count_up_to;
+use super::kalman_filter::{Innovation, KalmanFilter};
+use super::sample_window::{MAX_WINDOW, SampleWindow};
 use crate::plant::magnetic_bearing::{ForceEffect, MagneticBearing, Map, State};
 use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
-use serde_big_array::BigArray;
 
 /// Variances of the initial position \[m2\], velocity \[m2/s2\] and flux \[Wb2\].
 pub const INITIAL_VARIANCES: [f64; 3] = [1e-4, 1e-4, 1e-2];
@@ -57,7 +56,7 @@ const NOISE_LIMITS: (f64, f64) = (1e-18, 1e100);
 const GATE: f64 = 6.0;
 
 /// Samples of the beginning that are kept, and the fewest over which the filter runs again.
-const BEGINNING: usize = 64;
+const BEGINNING: usize = MAX_WINDOW;
 const SHORTEST_BEGINNING: usize = 8;
 
 /// Uncertainty of the flux, relative to its size, up to which the beginning is linearised anew.
@@ -80,17 +79,11 @@ pub struct KalmanSettings {
 /// Estimate and covariance after the last sample, and the first samples.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct KalmanObserver {
-    filter: Filter,
+    filter: KalmanFilter<3>,
     /// Where the filter starts, again when a sample yields nothing finite.
     initial: State,
-    /// First outputs \[m\] and the voltage \[V\] that acted before each.
-    #[serde(with = "BigArray")]
-    positions: [f64; BEGINNING],
-    #[serde(with = "BigArray")]
-    voltages: [f64; BEGINNING],
-    /// Samples since the start, counted up to [`BEGINNING`].
-    #[serde(deserialize_with = "count_up_to::<_, BEGINNING>")]
-    samples: usize,
+    /// The first samples, up to [`BEGINNING`]: outputs \[m\] and voltages \[V\].
+    beginning: SampleWindow,
     /// Last estimate, kept when a sample yields nothing finite.
     estimate: State,
 }
@@ -99,11 +92,9 @@ impl KalmanObserver {
     /// A filter that expects `initial`, with [`INITIAL_VARIANCES`].
     pub fn new(initial: State) -> Self {
         Self {
-            filter: Filter::new(initial),
+            filter: KalmanFilter::expecting(initial),
             initial,
-            positions: [0.0; BEGINNING],
-            voltages: [0.0; BEGINNING],
-            samples: 0,
+            beginning: SampleWindow::EMPTY,
             estimate: initial,
         }
     }
@@ -130,29 +121,27 @@ impl KalmanObserver {
     #[inline(never)]
     pub fn update(&mut self, settings: &KalmanSettings, position: f64, applied_voltage: f64) -> Estimate {
         let mut filter = self.filter;
-        if self.samples > 0 {
-            filter.predict(settings, applied_voltage);
+        if self.beginning.len() > 0 {
+            filter.predict_bearing(settings, applied_voltage);
         }
-        let innovation = position - filter.state.position;
-        let innovation_variance = filter.correct(settings, innovation);
-        let residual = innovation.abs().min(f64::MAX);
+        let innovation = filter.correct_position(settings, position);
+        let residual = innovation.value.abs().min(f64::MAX);
         if !filter.is_valid() {
-            self.filter = Filter::new(self.initial);
-            self.samples = 0;
+            self.filter = KalmanFilter::expecting(self.initial);
+            self.beginning = SampleWindow::EMPTY;
             return Estimate { state: self.estimate, residual, iterations: 1, converged: false };
         }
         self.filter = filter;
-        if self.samples < BEGINNING {
-            self.positions[self.samples] = position;
-            self.voltages[self.samples] = applied_voltage;
-            self.samples += 1;
-            if self.samples >= SHORTEST_BEGINNING && self.samples.is_power_of_two() {
+        if self.beginning.len() < BEGINNING {
+            self.beginning.push(position, applied_voltage);
+            let samples = self.beginning.len();
+            if samples >= SHORTEST_BEGINNING && samples.is_power_of_two() {
                 self.begin_again(settings);
             }
         }
-        let fits = innovation * innovation <= GATE * GATE * innovation_variance;
-        let converged = fits && self.samples >= 3;
-        self.estimate = self.filter.state;
+        let fits = innovation.value * innovation.value <= GATE * GATE * innovation.variance;
+        let converged = fits && self.beginning.len() >= 3;
+        self.estimate = estimate(&self.filter);
         Estimate { state: self.estimate, residual, iterations: 1, converged }
     }
 
@@ -160,21 +149,20 @@ impl KalmanObserver {
     #[cold]
     fn begin_again(&mut self, settings: &KalmanSettings) {
         let KalmanSettings { sample_time, flux_noise, .. } = *settings;
-        let positions = &self.positions[..self.samples];
-        let voltages = &self.voltages[1..self.samples];
-        let latest = self.filter.state.flux;
+        let (positions, voltages) = (self.beginning.measurements(), self.beginning.inputs());
+        let latest = self.filter.state[2];
         let first = latest - sample_time * voltages.iter().sum::<f64>();
         let variance =
-            self.filter.covariance.flux_variance() + voltages.len() as f64 * flux_noise * flux_noise;
+            self.filter.covariance.last_variance() + voltages.len() as f64 * flux_noise * flux_noise;
         if variance.sqrt() > KNOWN_FLUX * latest.abs().max(first.abs()) {
             return;
         }
-        let mut filter = Filter::new(self.initial);
+        let mut filter = KalmanFilter::expecting(self.initial);
         let mut reference = first;
-        filter.correct(settings, positions[0] - filter.state.position);
+        filter.correct_position(settings, positions[0]);
         for (position, voltage) in positions[1..].iter().zip(voltages) {
             filter.predict_along(settings, *voltage, reference);
-            filter.correct(settings, position - filter.state.position);
+            filter.correct_position(settings, *position);
             reference += sample_time * voltage;
         }
         if filter.is_valid() {
@@ -183,28 +171,17 @@ impl KalmanObserver {
     }
 }
 
-/// State and covariance.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-struct Filter {
-    state: State,
-    covariance: FactoredCovariance,
-}
-
-impl Filter {
-    fn new(initial: State) -> Self {
-        Self { state: initial, covariance: FactoredCovariance::diagonal(INITIAL_VARIANCES) }
-    }
-
-    fn is_valid(&self) -> bool {
-        self.state.is_finite() && self.covariance.is_valid()
+impl KalmanFilter<3> {
+    fn expecting(initial: State) -> Self {
+        Self::new([initial.position, initial.velocity, initial.flux], INITIAL_VARIANCES)
     }
 
     /// One step, the force effect replaced by its best linear function of a flux with variance P33.
     #[inline]
-    fn predict(&mut self, settings: &KalmanSettings, voltage: f64) {
+    fn predict_bearing(&mut self, settings: &KalmanSettings, voltage: f64) {
         let KalmanSettings { bearing, map, sample_time, .. } = *settings;
-        let flux = self.state.flux;
-        let spread = (3.0 * self.covariance.flux_variance()).sqrt();
+        let flux = self.state[2];
+        let spread = (3.0 * self.covariance.last_variance()).sqrt();
         let nodes = [flux - spread, flux, flux + spread];
         let [low, middle, high] = nodes.map(|node| bearing.force_effect(map, node, voltage, sample_time));
         let slopes = nodes.map(|node| bearing.force_effect_slope(map, node, voltage, sample_time));
@@ -213,14 +190,14 @@ impl Filter {
         let mean = combine([middle, bend, bend], [1.0, 1.0 / 6.0, 0.0]);
         let slope = combine(slopes, [1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0]);
         self.step(settings, voltage, mean, slope);
-        self.covariance.add_force_noise(bend, 1.0 / 18.0);
+        self.covariance.add_noise([bend.position, bend.velocity, 0.0], 1.0 / 18.0);
     }
 
     /// One step linearised at the flux `reference`.
     fn predict_along(&mut self, settings: &KalmanSettings, voltage: f64, reference: f64) {
         let KalmanSettings { bearing, map, sample_time, .. } = *settings;
         let (effect, slope) = bearing.linearised_force_effect(map, reference, voltage, sample_time);
-        let offset = self.state.flux - reference;
+        let offset = self.state[2] - reference;
         let effect = combine([effect, slope, slope], [1.0, offset, 0.0]);
         self.step(settings, voltage, effect, slope);
     }
@@ -229,21 +206,24 @@ impl Filter {
     #[inline]
     fn step(&mut self, settings: &KalmanSettings, voltage: f64, effect: ForceEffect, slope: ForceEffect) {
         let KalmanSettings { sample_time, flux_noise, .. } = *settings;
-        self.state = self.state.after(effect, voltage, sample_time);
-        self.covariance.advance(slope, sample_time);
-        self.covariance.add_flux_noise(flux_noise * flux_noise);
+        let State { position, velocity, flux } = estimate(self).after(effect, voltage, sample_time);
+        self.state = [position, velocity, flux];
+        self.covariance.advance([[0.0, sample_time, slope.position], [0.0, 0.0, slope.velocity], [0.0; 3]]);
+        self.covariance.add_noise_to_last(flux_noise * flux_noise);
     }
 
-    /// x := x + K `innovation`; returns the innovation's variance \[m2\].
+    /// A measured position \[m\].
     #[inline]
-    fn correct(&mut self, settings: &KalmanSettings, innovation: f64) -> f64 {
+    fn correct_position(&mut self, settings: &KalmanSettings, position: f64) -> Innovation {
         let noise = settings.position_noise.max(NOISE_LIMITS.0).min(NOISE_LIMITS.1);
-        let gain = self.covariance.measure_position(noise * noise);
-        self.state.position += gain.weights[0] * innovation;
-        self.state.velocity += gain.weights[1] * innovation;
-        self.state.flux += gain.weights[2] * innovation;
-        gain.innovation_variance
+        self.correct(position, noise * noise)
     }
+}
+
+#[inline]
+fn estimate(filter: &KalmanFilter<3>) -> State {
+    let [position, velocity, flux] = filter.state;
+    State { position, velocity, flux }
 }
 
 /// Weighted sum of three force effects.

@@ -20,8 +20,8 @@
 //! start has the variance sigma^2 / <P Q', P Q'>, about 180 sigma^2 / (T^4 x3^2 N^5) at a steady flux.
 
 use super::newton::NewtonSettings;
+use super::sample_window::MAX_WINDOW;
 use super::step_length::{moved, step_length};
-use super::windowed_newton::MAX_WINDOW;
 use super::{CONVERGED, largest_magnitude};
 use crate::plant::magnetic_bearing::State;
 

@@ -197,6 +197,6 @@ fn prepare(settings: &ExtendedStateSettings) -> Step {
 
 /// A difference that overflows, or one to an expectation that is not a number, is as large as can be.
 #[inline]
-fn finite(difference: f64) -> f64 {
+pub(super) fn finite(difference: f64) -> f64 {
     if difference.is_nan() { f64::MAX } else { difference.clamp(f64::MIN, f64::MAX) }
 }

@@ -9,7 +9,9 @@
 
 use crate::unit::system::{System, systems};
 use crate::unit::variable::{Causality, Kind, Variable};
-use crate::unit::{ClosedLoop, Description, ExchangeOrder, Silence, StartValues, Unit, UnitError, UnitType, units};
+use crate::unit::{
+    ClosedLoop, Description, ExchangeOrder, Silence, StartValues, Unit, UnitError, UnitType, units,
+};
 
 /// Longest run \[s\]. The inputs of a reference run do not react to the plant, and levitation is unstable: what an
 /// importer rounds off its step size grows with e^(t / 20 ms) and worse.

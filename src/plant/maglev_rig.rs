@@ -30,7 +30,7 @@ pub struct State {
 }
 
 /// Physical parameters.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MaglevRig<S = f64> {
     /// m \[kg\]
     pub mass: S,

@@ -9,7 +9,7 @@ use super::unit_of_measure::{
 };
 use super::variable::{Kind, Variable};
 use super::{MAGLEV_RIG_CONTROLLER, MAGLEV_RIG_PLANT};
-use crate::plant::maglev_rig::PositionSensor;
+use crate::plant::maglev_rig::{MaglevRig, PositionSensor};
 
 pub static BALL_DISTANCE: Quantity = Quantity {
     name: "BallDistance",
@@ -143,6 +143,31 @@ pub const OPERATING_SENSOR_VOLTAGE: f64 = -1.50868;
 /// Voltage \[V\] that holds the ball there, from Table 1.
 pub const OPERATING_VOLTAGE: f64 = 0.758_946_638_440_411;
 
+pub const fn mass() -> Variable {
+    Variable::parameter("mass", Kind::Real(&RIG_MASS), MaglevRig::PRINTED.mass)
+        .range(1e-6, 1e3)
+        .describe("m, printed in Table 1")
+}
+
+pub const fn gravity() -> Variable {
+    Variable::parameter("gravity", Kind::Real(&RIG_GRAVITY), MaglevRig::PRINTED.gravity)
+        .range(-100.0, 100.0)
+        .describe("g, printed in Table 1")
+}
+
+pub const fn electromagnetic_constant() -> Variable {
+    let start = MaglevRig::PRINTED.electromagnetic_constant;
+    Variable::parameter("electromagnetic_constant", Kind::Real(&ELECTROMAGNETIC_CONSTANT), start)
+        .range(0.0, 1.0)
+        .describe("K, printed in Table 1 without a unit")
+}
+
+pub const fn driver_gain() -> Variable {
+    Variable::parameter("driver_gain", Kind::Real(&DRIVER_GAIN), MaglevRig::PRINTED.driver_gain)
+        .range(0.0, 100.0)
+        .describe("k1, current per voltage of the driver with its inner loop, printed in Table 1")
+}
+
 pub const fn sensor_gain() -> Variable {
     Variable::parameter("sensor_gain", Kind::Real(&SENSOR_GAIN), PositionSensor::MANUAL.gain)
         .range(1e-3, 1e6)
@@ -199,7 +224,6 @@ pub static RIG: System = System {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plant::maglev_rig::MaglevRig;
 
     #[test]
     fn operating_point_is_a_rest_of_the_rig() {

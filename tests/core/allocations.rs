@@ -121,13 +121,13 @@ fn ball_steps_allocate_nothing(kind: f64, listener: &mut Listener) {
 
 /// Every observer of the rig with both laws, one of them diverging, the ball lost and found.
 fn rig_steps_allocate_nothing(listener: &mut Listener) {
-    for index in 0..48 {
+    for index in 0..128 {
         let parameters = [
-            ("observer.kind", index % 2),
-            ("observer.discretisation", index / 2 % 4),
-            ("observer.form", index / 8 % 2),
-            ("observer.measurement", index / 16 % 2),
-            ("controller.kind", index / 32),
+            ("observer.kind", index % 4),
+            ("observer.discretisation", index / 4 % 4),
+            ("observer.form", index / 16 % 2),
+            ("observer.measurement", index / 32 % 2),
+            ("controller.kind", index / 64),
         ];
         let mut controller = parameters.map(|(name, item)| (name, f64::from(item + 1))).to_vec();
         controller.extend([("observer.bandwidth", 3000.0), ("observer.exponent[2]", 0.7)]);

@@ -53,6 +53,12 @@ const EXPENSIVE: &[(&str, &[(&str, f64)])] = &[
     ("MaglevRigController", &[]),
     ("MaglevRigController", &[("observer.kind", 2.0), ("observer.discretisation", 1.0)]),
     ("MaglevRigController", &[("observer.kind", 2.0), ("observer.substeps", 1000.0)]),
+    ("MaglevRigController", &[("observer.kind", 3.0)]),
+    ("MaglevRigController", &[("observer.kind", 4.0)]),
+    (
+        "MaglevRigController",
+        &[("observer.kind", 4.0), ("observer.window", 64.0), ("observer.max_iterations", 1000.0)],
+    ),
     ("MagneticBearingController", &[]),
     ("MagneticBearingController", &[("observer.max_iterations", 1000.0), ("observer.step_size", 1e-3)]),
     ("MagneticBearingController", &[("observer.kind", 2.0), ("observer.max_iterations", 1000.0)]),

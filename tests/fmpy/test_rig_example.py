@@ -26,7 +26,7 @@ def errors(output: str) -> dict[str, float]:
     return {name: float(value) for name, value, _ in found}
 
 
-@pytest.mark.parametrize("observer", ["linear", "nonlinear"])
+@pytest.mark.parametrize("observer", ["linear", "nonlinear", "kalman", "windowed_newton"])
 def test_example_draws_and_summarises(fmi_version: int, observer: str, tmp_path: Path) -> None:
     image = tmp_path / "rig.png"
     done = run_example("--fmi", fmi_version, "--observer", observer, "--force", 0.02, "--stop-time", 2, "--out", image)
@@ -61,7 +61,7 @@ def test_parameter_file_reaches_the_observer(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["--observer", "x"], "observer.kind = x: expected one of linear, nonlinear"),
+        (["--observer", "x"], "observer.kind = x: expected one of linear, nonlinear, kalman, windowed_newton"),
         (["--dist", "/nowhere"], "cargo run --release -- build"),
         (["--parameters", "/nowhere.json"], "cannot read the parameter file"),
         (["--noise", "-1"], "failed with status 3"),

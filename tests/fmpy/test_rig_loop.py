@@ -47,6 +47,10 @@ CONTROLLERS: dict[str, Values] = {
         "observer.bandwidth": 100.0,
         "controller.bandwidth": 40.0,
     },
+    "kalman": {"observer.kind": "kalman", "observer.measurement": "metres", "observer.initial": "zero"},
+    "windowed newton": {"observer.kind": "windowed_newton", "observer.estimate_disturbance": False},
+    "rejection, kalman": {**THROUGH_EXTENDED_STATE, "observer.kind": "kalman", "mass": 0.018},
+    "rejection, windowed newton": {**THROUGH_EXTENDED_STATE, "observer.kind": "windowed_newton", "observer.window": 64},
     "rejection, voltage applied": {**THROUGH_EXTENDED_STATE, "observer.voltage_source": "applied"},
     "ball lost": {**THROUGH_EXTENDED_STATE, "observer.input_gain": 1.0, "controller.input_gain": 1.0},
 }

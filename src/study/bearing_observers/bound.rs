@@ -19,12 +19,12 @@ pub struct Bound {
 /// The bound for a sensor of `noise` \[m\] along the trajectory of a run without process noise.
 pub fn cramer_rao(run: &Run, sample_time: f64, noise: f64) -> Bound {
     let bearing = MagneticBearing { epsilon: 0.0 };
-    let mut covariance = FactoredCovariance::diagonal(INITIAL_VARIANCES);
+    let mut covariance = FactoredCovariance::from_variances(INITIAL_VARIANCES);
     let (mut velocity, mut flux, mut count) = (0.0, 0.0, 0.0);
     let samples = run.state("flux").iter().zip(&run["controller.voltage"]);
     for (time, (true_flux, voltage)) in run.time.iter().zip(samples) {
         if noise > 0.0 {
-            covariance.measure_position(noise * noise);
+            covariance.measurement_update(noise * noise);
         }
         if *time >= SCORED_FROM {
             let matrix = covariance.matrix();
@@ -33,7 +33,7 @@ pub fn cramer_rao(run: &Run, sample_time: f64, noise: f64) -> Bound {
             count += 1.0;
         }
         let slope = bearing.force_effect_slope(Map::Exact, *true_flux, *voltage, sample_time);
-        covariance.advance(slope, sample_time);
+        covariance.advance([[0.0, sample_time, slope.position], [0.0, 0.0, slope.velocity], [0.0; 3]]);
     }
     if noise > 0.0 {
         Bound { velocity: (velocity / count).sqrt(), flux: (flux / count).sqrt() }

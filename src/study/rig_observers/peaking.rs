@@ -2,10 +2,11 @@
 
 use rayon::prelude::*;
 
-use super::estimators::{ExtendedStateEstimator, velocity_error};
+use super::contenders::velocity_error;
 use crate::chart::Panel;
 use crate::host::Value;
 use crate::observer::extended_state::{ExtendedState, gains_from_bandwidth};
+use crate::observer::rig_observer::RigEstimatorSettings;
 use crate::observer::sampled_extended_state::{ExtendedStateObserver, ExtendedStateSettings, Form};
 use crate::study::loop_packages::LoopPackages;
 use crate::study::metrics::peak;
@@ -67,7 +68,8 @@ pub fn trade_off() -> Vec<Line> {
                 .iter()
                 .filter_map(|bandwidth| {
                     let settings = settings(*bandwidth);
-                    let error = velocity_error(ExtendedStateEstimator::new(settings), &noisy, SCORED_FROM)?;
+                    let error =
+                        velocity_error(RigEstimatorSettings::ExtendedState(settings), &noisy, SCORED_FROM)?;
                     Some((*bandwidth, start_up_peak(settings)?, error))
                 })
                 .collect();

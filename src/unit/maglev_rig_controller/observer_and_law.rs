@@ -1,13 +1,13 @@
 //! Observer and law of the maglev rig.
 
 use super::parameters::{
-    Law, Measurement, check_input_gain, cost_of_tick, initial_estimate, law, limits, observer_settings,
+    Law, check_input_gain, cost_of_tick, initial_estimate, law, limits, observer_settings, start,
 };
 use super::table::*;
 use crate::controller::digital_pid::DigitalPid;
 use crate::controller::saturate_between;
 use crate::observer::extended_state::ExtendedState;
-use crate::observer::sampled_extended_state::ExtendedStateObserver;
+use crate::observer::rig_observer::{RigObserver, RigStart};
 use crate::signal::reference_filter::{Reference, ReferenceFilter};
 use crate::unit::sampled_controller::{ObserverAndLaw, Sample};
 use crate::unit::{Description, Journal, Topic, UnitError};
@@ -16,8 +16,7 @@ use serde::{Deserialize, Serialize};
 /// What observer, reference filter and law remember from tick to tick.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct RigObserverAndLaw {
-    measurement: Measurement,
-    observer: ExtendedStateObserver,
+    observer: RigObserver,
     reference_filter: ReferenceFilter,
     reference: Reference,
     law: Law,
@@ -28,12 +27,12 @@ impl RigObserverAndLaw {
     /// What the first tick adds: observer and reference start from the inputs.
     #[cold]
     fn begin(&mut self, values: &[f64; COUNT], journal: &mut dyn Journal) {
-        let measured = self.measurement.of(values[SENSOR_VOLTAGE]);
-        self.observer =
-            ExtendedStateObserver::new(observer_settings(values), initial_estimate(values, measured));
+        let settings = observer_settings(values);
+        let measured = settings.measurement.of(values[SENSOR_VOLTAGE]);
+        self.observer = RigObserver::new(settings, start(values, measured));
         self.reference = Reference::at_rest(values[REFERENCE]);
         if let Law::DisturbanceRejection(law) = self.law {
-            let assumed = self.measurement.input_gain_in_volts(values[OBSERVER_INPUT_GAIN]);
+            let assumed = settings.measurement.input_gain_in_volts(values[OBSERVER_INPUT_GAIN]);
             if (assumed / law.input_gain - 1.0).abs() > 0.01 && journal.wants(Topic::Observer) {
                 journal.note(
                     Topic::Observer,
@@ -50,7 +49,7 @@ impl RigObserverAndLaw {
     /// Sets the outputs that describe the observer's state.
     #[inline]
     fn publish(&self, estimate: ExtendedState, values: &mut [f64; COUNT]) {
-        let metres = self.measurement.in_metres(estimate);
+        let metres = self.observer.measurement().in_metres(estimate);
         values[ESTIMATE_POSITION] = estimate.position;
         values[ESTIMATE_VELOCITY] = estimate.velocity;
         values[ESTIMATE_EXTENDED] = estimate.extended;
@@ -65,8 +64,7 @@ impl ObserverAndLaw<COUNT> for RigObserverAndLaw {
 
     fn new(values: &[f64; COUNT]) -> Self {
         Self {
-            measurement: Measurement::from_values(values),
-            observer: ExtendedStateObserver::new(observer_settings(values), ExtendedState::default()),
+            observer: RigObserver::new(observer_settings(values), RigStart::Position(0.0)),
             reference_filter: ReferenceFilter::new(values[REFERENCE_FILTER], values[SAMPLE_TIME]),
             reference: Reference::default(),
             law: law(values),
@@ -80,7 +78,6 @@ impl ObserverAndLaw<COUNT> for RigObserverAndLaw {
 
     fn apply_tunable_parameters(&mut self, values: &[f64; COUNT]) {
         self.observer.adopt(observer_settings(values));
-        self.measurement = Measurement::from_values(values);
         self.reference_filter = ReferenceFilter::new(values[REFERENCE_FILTER], values[SAMPLE_TIME]);
         let law = law(values);
         if core::mem::discriminant(&law) != core::mem::discriminant(&self.law) {
@@ -97,7 +94,7 @@ impl ObserverAndLaw<COUNT> for RigObserverAndLaw {
         values[OBSERVER_RESTARTS] = 0.0;
         values[FILTERED_REFERENCE] = values[REFERENCE];
         values[VOLTAGE_OUTPUT] = saturate_between(values[CONTROLLER_OPERATING_VOLTAGE], limits(values), 0.0);
-        let initial = initial_estimate(values, self.measurement.of(values[SENSOR_VOLTAGE]));
+        let initial = initial_estimate(values, self.observer.measurement().of(values[SENSOR_VOLTAGE]));
         self.publish(initial, values);
     }
 
@@ -107,12 +104,13 @@ impl ObserverAndLaw<COUNT> for RigObserverAndLaw {
             self.begin(values, journal);
         }
         let (sensor_voltage, command) = (values[SENSOR_VOLTAGE], values[REFERENCE]);
-        let estimate = self.observer.update(self.measurement.of(sensor_voltage), sample.acting_voltage);
+        let estimate = self.observer.update(sensor_voltage, sample.acting_voltage);
         self.reference = self.reference_filter.advance(self.reference, command);
         values[VOLTAGE_OUTPUT] = match &self.law {
             Law::Pid(settings) => self.pid.update(settings, sensor_voltage, self.reference.position),
             Law::DisturbanceRejection(law) => {
-                let wanted = law.voltage(self.reference, self.measurement.in_volts(estimate.state));
+                let wanted =
+                    law.voltage(self.reference, self.observer.measurement().in_volts(estimate.state));
                 saturate_between(wanted, limits(values), values[VOLTAGE_OUTPUT])
             }
         };
@@ -127,7 +125,6 @@ impl ObserverAndLaw<COUNT> for RigObserverAndLaw {
 
     fn is_consistent(&self, values: &[f64; COUNT]) -> bool {
         self.observer.settings() == observer_settings(values)
-            && self.measurement == Measurement::from_values(values)
             && self.reference_filter == ReferenceFilter::new(values[REFERENCE_FILTER], values[SAMPLE_TIME])
             && self.law == law(values)
     }

@@ -6,41 +6,86 @@ use crate::controller::disturbance_rejection::DisturbanceRejection;
 use crate::observer::extended_state::{
     ExtendedState, LinearInjection, NonlinearInjection, gains_from_bandwidth,
 };
+use crate::observer::gauss_newton::GaussNewtonSettings;
+use crate::observer::rig_kalman::RigKalmanSettings;
+use crate::observer::rig_measurement::Measurement;
+use crate::observer::rig_model::DisturbedRig;
+use crate::observer::rig_observer::{RigEstimatorSettings, RigObserverSettings, RigStart};
 use crate::observer::sampled_extended_state::{Discretisation, ExtendedStateSettings, Form, InjectionChoice};
-use crate::plant::maglev_rig::PositionSensor;
+use crate::plant::maglev_rig::{MaglevRig, PositionSensor};
 use crate::unit::UnitError;
 use serde::{Deserialize, Serialize};
 
-/// Costs at most \[s\], see [`crate::unit::work`]: of a tick, of a closed form for gains as large as they come, and of a
-/// Runge-Kutta step of the observer.
+/// Costs at most \[s\], see [`crate::unit::work`]: of a tick, of a closed form for gains as large as they come, of a
+/// Runge-Kutta step of an extended state observer, of a sample of the Kalman filter, and of one that the windowed
+/// observer goes over.
 const COST_OF_TICK: f64 = 200e-9;
 const COST_OF_CLOSED_FORM: f64 = 3e-6;
 const COST_OF_SUBSTEP: f64 = 300e-9;
+const COST_OF_FILTERING: f64 = 300e-9;
+const COST_OF_WINDOW_SAMPLE: f64 = 150e-9;
 
-pub(super) fn observer_settings(values: &[f64; COUNT]) -> ExtendedStateSettings {
+/// What the observer is told.
+pub(super) fn observer_settings(values: &[f64; COUNT]) -> RigObserverSettings {
+    let sensor = PositionSensor { gain: values[SENSOR_GAIN], offset: values[SENSOR_OFFSET] };
+    let estimates_disturbance = values[ESTIMATE_DISTURBANCE] != 0.0;
+    let estimator = match ObserverKind::from_number(values[OBSERVER]) {
+        kind @ (ObserverKind::Linear | ObserverKind::Nonlinear) => {
+            RigEstimatorSettings::ExtendedState(extended_state_settings(values, kind))
+        }
+        ObserverKind::Kalman => RigEstimatorSettings::Kalman(RigKalmanSettings {
+            model: model(values),
+            position_noise: values[OBSERVER_SENSOR_NOISE] / sensor.gain,
+            disturbance_noise: estimates_disturbance.then_some(values[DISTURBANCE_NOISE]),
+        }),
+        ObserverKind::WindowedNewton => RigEstimatorSettings::WindowedNewton(
+            model(values),
+            GaussNewtonSettings {
+                window: values[WINDOW] as usize,
+                max_iterations: values[MAX_ITERATIONS] as u32,
+                estimated_states: if estimates_disturbance { 3 } else { 2 },
+            },
+        ),
+    };
+    let measurement = match MeasurementKind::from_number(values[OBSERVER_MEASUREMENT]) {
+        MeasurementKind::Volts => Measurement::Volts(sensor),
+        MeasurementKind::Metres => Measurement::Metres(sensor),
+    };
+    RigObserverSettings { measurement, input_gain: values[OBSERVER_INPUT_GAIN], estimator }
+}
+
+/// The rig as the model-based observers know it.
+fn model(values: &[f64; COUNT]) -> DisturbedRig {
+    let rig = MaglevRig {
+        mass: values[MASS],
+        gravity: values[GRAVITY],
+        electromagnetic_constant: values[FORCE_CONSTANT],
+        driver_gain: values[DRIVER_GAIN],
+    };
+    DisturbedRig { rig, sample_time: values[SAMPLE_TIME] }
+}
+
+fn extended_state_settings(values: &[f64; COUNT], kind: ObserverKind) -> ExtendedStateSettings {
     let gains = match Tuning::from_number(values[OBSERVER_TUNING]) {
         Tuning::Gains => [values[OBSERVER_GAIN_1], values[OBSERVER_GAIN_2], values[OBSERVER_GAIN_3]],
         Tuning::Bandwidth => gains_from_bandwidth(values[OBSERVER_BANDWIDTH]),
     };
-    let kind = ObserverKind::from_number(values[OBSERVER]);
-    let injection = match kind {
-        ObserverKind::Linear => InjectionChoice::Linear(LinearInjection { gains }),
-        ObserverKind::Nonlinear => InjectionChoice::Nonlinear(NonlinearInjection::new(
+    let is_nonlinear = kind == ObserverKind::Nonlinear;
+    let injection = match is_nonlinear {
+        false => InjectionChoice::Linear(LinearInjection { gains }),
+        true => InjectionChoice::Nonlinear(NonlinearInjection::new(
             gains,
             [values[EXPONENT_1], values[EXPONENT_2], values[EXPONENT_3]],
             [values[LINEAR_ZONE_1], values[LINEAR_ZONE_2], values[LINEAR_ZONE_3]],
         )),
     };
     let runge_kutta = Discretisation::RungeKutta(values[OBSERVER_SUBSTEPS] as u32);
-    let discretisation = match (DiscretisationKind::from_number(values[OBSERVER_DISCRETISATION]), kind) {
-        (DiscretisationKind::Exact, _) | (DiscretisationKind::Automatic, ObserverKind::Linear) => {
-            Discretisation::Exact
-        }
-        (DiscretisationKind::RungeKutta, _) | (DiscretisationKind::Automatic, ObserverKind::Nonlinear) => {
-            runge_kutta
-        }
-        (DiscretisationKind::Euler, _) => Discretisation::Euler,
-    };
+    let discretisation =
+        match (DiscretisationKind::from_number(values[OBSERVER_DISCRETISATION]), is_nonlinear) {
+            (DiscretisationKind::Exact, _) | (DiscretisationKind::Automatic, false) => Discretisation::Exact,
+            (DiscretisationKind::RungeKutta, _) | (DiscretisationKind::Automatic, true) => runge_kutta,
+            (DiscretisationKind::Euler, _) => Discretisation::Euler,
+        };
     let form = match FormKind::from_number(values[OBSERVER_FORM]) {
         FormKind::Predictor => Form::Predictor,
         FormKind::Current => Form::Current,
@@ -63,87 +108,36 @@ pub(super) fn check_input_gain(values: &[f64; COUNT]) -> Result<(), UnitError> {
 
 /// What a tick costs at most \[s\], see [`crate::unit::work`].
 pub(super) fn cost_of_tick(values: &[f64; COUNT]) -> f64 {
-    let ExtendedStateSettings { injection, discretisation, .. } = observer_settings(values);
-    let observer = match (discretisation, injection) {
-        (Discretisation::RungeKutta(substeps), _) => COST_OF_SUBSTEP * f64::from(substeps),
-        // Frozen gains make another closed form of each sample.
-        (Discretisation::Exact, InjectionChoice::Nonlinear(_)) => COST_OF_CLOSED_FORM,
-        _ => 0.0,
+    let observer = match observer_settings(values).estimator {
+        RigEstimatorSettings::Kalman(_) => COST_OF_FILTERING,
+        // The window is gone over once per iteration, and once to the newest sample.
+        RigEstimatorSettings::WindowedNewton(_, GaussNewtonSettings { window, max_iterations, .. }) => {
+            COST_OF_WINDOW_SAMPLE * window as f64 * (1.0 + f64::from(max_iterations))
+        }
+        RigEstimatorSettings::ExtendedState(ExtendedStateSettings { injection, discretisation, .. }) => {
+            match (discretisation, injection) {
+                (Discretisation::RungeKutta(substeps), _) => COST_OF_SUBSTEP * f64::from(substeps),
+                // Frozen gains make another closed form of each sample.
+                (Discretisation::Exact, InjectionChoice::Nonlinear(_)) => COST_OF_CLOSED_FORM,
+                _ => 0.0,
+            }
+        }
     };
     COST_OF_TICK + observer
 }
 
-/// How a sensor voltage \[V\] and the observer's measurement relate.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) enum Measurement {
-    Volts(PositionSensor),
-    Metres(PositionSensor),
-}
-
-impl Measurement {
-    pub(super) fn from_values(values: &[f64; COUNT]) -> Self {
-        let sensor = PositionSensor { gain: values[SENSOR_GAIN], offset: values[SENSOR_OFFSET] };
-        match MeasurementKind::from_number(values[OBSERVER_MEASUREMENT]) {
-            MeasurementKind::Volts => Self::Volts(sensor),
-            MeasurementKind::Metres => Self::Metres(sensor),
-        }
-    }
-
-    /// What the observer measures at a sensor voltage.
-    #[inline]
-    pub(super) fn of(&self, sensor_voltage: f64) -> f64 {
-        match self {
-            Self::Volts(_) => sensor_voltage,
-            Self::Metres(sensor) => sensor.position(sensor_voltage),
-        }
-    }
-
-    /// The observer's estimate in sensor volts.
-    #[inline]
-    pub(super) fn in_volts(&self, z: ExtendedState) -> ExtendedState {
-        match self {
-            Self::Volts(_) => z,
-            Self::Metres(sensor) => ExtendedState {
-                position: sensor.voltage(z.position),
-                velocity: sensor.gain * z.velocity,
-                extended: sensor.gain * z.extended,
-            },
-        }
-    }
-
-    /// The observer's estimate in metres.
-    #[inline]
-    pub(super) fn in_metres(&self, z: ExtendedState) -> ExtendedState {
-        match self {
-            Self::Metres(_) => z,
-            Self::Volts(sensor) => ExtendedState {
-                position: sensor.position(z.position),
-                velocity: z.velocity / sensor.gain,
-                extended: z.extended / sensor.gain,
-            },
-        }
-    }
-
-    /// The observer's input gain in sensor volts \[1/s2\].
-    pub(super) fn input_gain_in_volts(&self, input_gain: f64) -> f64 {
-        match self {
-            Self::Volts(_) => input_gain,
-            Self::Metres(sensor) => sensor.gain * input_gain,
-        }
-    }
-}
-
-/// z at the first tick, for what the observer measures then.
-pub(super) fn initial_estimate(values: &[f64; COUNT], measurement: f64) -> ExtendedState {
+/// Where the observer starts, for what it measures at the first tick.
+pub(super) fn start(values: &[f64; COUNT], measured: f64) -> RigStart {
     match Initial::from_number(values[OBSERVER_INITIAL]) {
-        Initial::Zero => ExtendedState::default(),
-        Initial::Steady => ExtendedState {
-            position: measurement,
-            velocity: 0.0,
-            extended: -values[OBSERVER_INPUT_GAIN] * values[CONTROLLER_OPERATING_VOLTAGE],
-        },
-        Initial::Matched => ExtendedState { position: measurement, ..ExtendedState::default() },
+        Initial::Zero => RigStart::Position(0.0),
+        Initial::Steady => RigStart::Held(measured, values[CONTROLLER_OPERATING_VOLTAGE]),
+        Initial::Matched => RigStart::Position(measured),
     }
+}
+
+/// Estimate before the first tick.
+pub(super) fn initial_estimate(values: &[f64; COUNT], measured: f64) -> ExtendedState {
+    start(values, measured).extended_state(values[OBSERVER_INPUT_GAIN])
 }
 
 /// The law in use.

@@ -1,5 +1,6 @@
 //! Variables and description of the controller of the maglev rig.
 
+use crate::observer::gauss_newton::MAX_WINDOW;
 use crate::unit::Description;
 use crate::unit::choice::choice;
 use crate::unit::controller_choices::VoltageSource;
@@ -7,18 +8,21 @@ use crate::unit::longest_step::longest_step;
 use crate::unit::maglev_rig::{
     BALL_ACCELERATION, BALL_DISTANCE, BALL_VELOCITY, BANDWIDTH, DRIVER_VOLTAGE, FIRST_OBSERVER_GAIN,
     INPUT_GAIN, OBSERVED_ACCELERATION, OBSERVED_INPUT_GAIN, OBSERVED_POSITION, OBSERVED_VELOCITY,
-    OPERATING_SENSOR_VOLTAGE, OPERATING_VOLTAGE, SECOND_OBSERVER_GAIN,
-    SENSOR_VOLTAGE as SENSOR_VOLTAGE_QUANTITY, THIRD_OBSERVER_GAIN, sensor_gain, sensor_offset, voltage_max,
-    voltage_min,
+    OPERATING_SENSOR_VOLTAGE, OPERATING_VOLTAGE, SECOND_OBSERVER_GAIN, SENSOR_NOISE as SENSOR_NOISE_QUANTITY,
+    SENSOR_VOLTAGE as SENSOR_VOLTAGE_QUANTITY, THIRD_OBSERVER_GAIN, driver_gain, electromagnetic_constant,
+    gravity, mass, sensor_gain, sensor_offset, voltage_max, voltage_min,
 };
 use crate::unit::quantity::{DURATION, Enumeration, RATE, RATIO, TIME as TIME_QUANTITY};
 use crate::unit::start_delay::start_delay;
 use crate::unit::variable::{Kind, Variability, Variable, variable_table};
 
 choice! {
-    pub(super) enum ObserverKind = "RigObserver", "Extended state observer" {
+    pub(super) enum ObserverKind = "RigObserver", "State estimator" {
         Linear = "linear", "LESO, the error is fed in with constant gains, (12)";
         Nonlinear = "nonlinear", "NESO, the error is fed in through Han's function fal, (11)";
+        Kalman = "kalman", "Extended Kalman filter on (6) with a disturbing acceleration as third state";
+        WindowedNewton = "windowed_newton",
+            "Least squares by Gauss-Newton over a window of samples on (6) with a disturbing acceleration";
     }
 }
 
@@ -116,7 +120,8 @@ variable_table! {
     ESTIMATE_EXTENDED = Variable::held_output("estimate.extended", Kind::Real(&OBSERVED_ACCELERATION))
         .initially_from(&["observer.initial", "observer.input_gain", "controller.operating_voltage"])
         .describe("z3 at the last tick, what is known of the acceleration beyond b u, in V/s2 or m/s2 as \
-            observer.measurement selects");
+            observer.measurement selects; of kalman and windowed_newton the model's acceleration under the voltage that \
+            acted, with the estimated disturbance, less b u");
     OBSERVER_RESIDUAL = Variable::held_output("observer.residual", Kind::Real(&OBSERVED_POSITION))
         .describe("y less what the observer expected of it at the last tick, in V or m as observer.measurement selects");
     OBSERVER_RESTARTS = Variable::held_output("observer.restarts", Kind::Integer)
@@ -138,9 +143,9 @@ variable_table! {
     START_DELAY = start_delay();
     LONGEST_STEP = longest_step();
     OBSERVER = Variable::parameter("observer.kind", Kind::Enumeration(&OBSERVER_KIND), ObserverKind::Linear.number())
-        .describe("Extended state observer");
+        .describe("State estimator");
     OBSERVER_TUNING = Variable::tunable("observer.tuning", Kind::Enumeration(&TUNING), Tuning::Bandwidth.number())
-        .describe("Where the observer's gains come from, of either kind");
+        .describe("Where the gains of linear and nonlinear come from");
     OBSERVER_BANDWIDTH = Variable::tunable("observer.bandwidth", Kind::Real(&BANDWIDTH), 100.0)
         .range(1e-3, 1e5)
         .describe("w_o, minus the triple pole of the linear observer; printed in Table 3. Through the extended state \
@@ -157,7 +162,8 @@ variable_table! {
     OBSERVER_INPUT_GAIN = Variable::tunable("observer.input_gain", Kind::Real(&OBSERVED_INPUT_GAIN), 1.0)
         .range(-1e9, 1e9)
         .describe("b, what the observer takes for the effect of the voltage on the acceleration. Printed 1 (Tables 3, \
-            4) has the wrong sign: enough to watch; to control set it to controller.input_gain");
+            4) has the wrong sign: enough to watch; to control set it to controller.input_gain. To kalman and \
+            windowed_newton it only says what estimate.extended is beyond");
     EXPONENT_1 = Variable::tunable("observer.exponent[1]", Kind::Real(&RATIO), 1.0)
         .range(0.01, 2.0)
         .describe("alpha1 of nonlinear, printed in Table 4; 1 is linear");
@@ -184,6 +190,22 @@ variable_table! {
     OBSERVER_SUBSTEPS = Variable::parameter("observer.substeps", Kind::Integer, 1.0)
         .range(1.0, 1000.0)
         .describe("Steps of runge_kutta per sample");
+    WINDOW = Variable::parameter("observer.window", Kind::Integer, 24.0)
+        .range(3.0, MAX_WINDOW as f64)
+        .describe("N, samples that windowed_newton explains at once");
+    MAX_ITERATIONS = Variable::tunable("observer.max_iterations", Kind::Integer, 3.0)
+        .range(1.0, 1000.0)
+        .describe("Largest number of Gauss-Newton iterations per tick of windowed_newton, which start from the last solution");
+    ESTIMATE_DISTURBANCE = Variable::parameter("observer.estimate_disturbance", Kind::Boolean, 1.0)
+        .describe("Whether kalman and windowed_newton estimate a disturbing acceleration, which stands for a force or \
+            another mass, too; without it they trust their model alone");
+    DISTURBANCE_NOISE = Variable::tunable("observer.disturbance_noise", Kind::Real(&BALL_ACCELERATION), 2.0)
+        .range(0.0, 1e6)
+        .describe("Standard deviation of the change of the disturbing acceleration within a second that kalman assumes, \
+            a random walk: the larger, the faster and the noisier it follows");
+    OBSERVER_SENSOR_NOISE = Variable::tunable("observer.sensor_noise", Kind::Real(&SENSOR_NOISE_QUANTITY), 1e-3)
+        .range(1e-9, 1e3)
+        .describe("Standard deviation of the sensor voltage that kalman assumes");
     OBSERVER_MEASUREMENT = Variable::parameter("observer.measurement", Kind::Enumeration(&MEASUREMENT), MeasurementKind::Volts.number())
         .describe("What the observer takes for its measurement");
     OBSERVER_INITIAL = Variable::parameter("observer.initial", Kind::Enumeration(&INITIAL), Initial::Steady.number())
@@ -223,10 +245,14 @@ variable_table! {
     VOLTAGE_MAX = voltage_max("controller.voltage_max");
     SENSOR_GAIN = sensor_gain();
     SENSOR_OFFSET = sensor_offset();
+    MASS = mass();
+    GRAVITY = gravity();
+    FORCE_CONSTANT = electromagnetic_constant();
+    DRIVER_GAIN = driver_gain();
 }
 
 pub static DESCRIPTION: Description = Description::new("MaglevRigController", &VARIABLES)
-    .summary("Extended state observers, PID and disturbance rejection for the maglev rig Feedback 33-942S")
+    .summary("Observers, PID and disturbance rejection for the maglev rig Feedback 33-942S")
     .documentation(&[
         "Observers and control of a ball below a coil, from the voltage of its position sensor: A. J. Humaidi et al., \
          Experimental Design and Verification of Extended State Observers for Magnetic Levitation System Based on PSO, \
@@ -248,7 +274,13 @@ pub static DESCRIPTION: Description = Description::new("MaglevRigController", &V
          its observer must assume the same input gain: set observer.input_gain to controller.input_gain (in metres: \
          divided by sensor_gain) and observer.bandwidth to some five times controller.bandwidth, say 300. The paper's \
          input gain 1 has the wrong sign and loses the ball. It needs no operating voltage.",
-        "An observer that diverges, as one with too large gains by Euler does, starts anew from the measurement and \
+        "Beyond the paper: kalman and windowed_newton know the rig by mass, gravity, electromagnetic_constant and \
+         driver_gain, and take what the model lacks for an acceleration, with observer.estimate_disturbance. kalman \
+         needs observer.sensor_noise to be about right, windowed_newton a window as long as noise demands and the \
+         disturbance permits. They measure in metres; observer.measurement selects what the estimates are given in. \
+         Through the extended state they close the loop like the others, with observer.input_gain = controller.input_gain.",
+        "An observer that diverges, as one with too large gains by Euler does, or whose model says that the ball is \
+         beyond the coil, starts anew from the measurement and \
          counts that in observer.restarts; the outputs are finite and the voltage is within its limits, always.",
     ])
     .experiment(1e-3, 10.0);

@@ -1,11 +1,10 @@
 //! Variables and description of the maglev rig.
 
-use crate::plant::maglev_rig::MaglevRig;
 use crate::unit::Description;
 use crate::unit::maglev_rig::{
-    BALL_ACCELERATION, BALL_DISTANCE, BALL_VELOCITY, DRIVER_GAIN, DRIVER_VOLTAGE, ELECTROMAGNETIC_CONSTANT,
-    OPERATING_VOLTAGE, RIG_CURRENT, RIG_FORCE, RIG_GRAVITY, RIG_MASS, SENSOR_NOISE as SENSOR_NOISE_QUANTITY,
-    SENSOR_VOLTAGE as SENSOR_VOLTAGE_QUANTITY, sensor_gain, sensor_offset, voltage_max, voltage_min,
+    BALL_ACCELERATION, BALL_DISTANCE, BALL_VELOCITY, DRIVER_VOLTAGE, OPERATING_VOLTAGE, RIG_CURRENT,
+    RIG_FORCE, SENSOR_NOISE as SENSOR_NOISE_QUANTITY, SENSOR_VOLTAGE as SENSOR_VOLTAGE_QUANTITY, driver_gain,
+    electromagnetic_constant, gravity, mass, sensor_gain, sensor_offset, voltage_max, voltage_min,
 };
 use crate::unit::sensor::{SensorVariables, sensor_variables};
 use crate::unit::variable::{Kind, Variability, Variable, variable_table};
@@ -54,26 +53,10 @@ variable_table! {
         .describe("Distance to the lower stop as a share of the free way; resting there, what presses the ball on, in g");
     MAGNETIC_FORCE = Variable::local("magnetic_force", Kind::Real(&RIG_FORCE), Variability::Continuous)
         .describe("K i^2 / x^2 under the present voltage, upwards");
-    MASS = Variable::parameter("mass", Kind::Real(&RIG_MASS), MaglevRig::PRINTED.mass)
-        .range(1e-6, 1e3)
-        .describe("m, printed in Table 1");
-    GRAVITY = Variable::parameter("gravity", Kind::Real(&RIG_GRAVITY), MaglevRig::PRINTED.gravity)
-        .range(-100.0, 100.0)
-        .describe("g, printed in Table 1");
-    FORCE_CONSTANT = Variable::parameter(
-        "electromagnetic_constant",
-        Kind::Real(&ELECTROMAGNETIC_CONSTANT),
-        MaglevRig::PRINTED.electromagnetic_constant,
-    )
-        .range(0.0, 1.0)
-        .describe("K, printed in Table 1 without a unit");
-    DRIVER_GAIN_PARAMETER = Variable::parameter(
-        "driver_gain",
-        Kind::Real(&DRIVER_GAIN),
-        MaglevRig::PRINTED.driver_gain,
-    )
-        .range(0.0, 100.0)
-        .describe("k1, current per voltage of the driver with its inner loop, printed in Table 1");
+    MASS = mass();
+    GRAVITY = gravity();
+    FORCE_CONSTANT = electromagnetic_constant();
+    DRIVER_GAIN_PARAMETER = driver_gain();
     SENSOR_GAIN = sensor_gain();
     SENSOR_OFFSET = sensor_offset();
     VOLTAGE_MIN = voltage_min("voltage_min");

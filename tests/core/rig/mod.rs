@@ -2,6 +2,7 @@
 
 mod closed_loop;
 mod experiment;
+mod model_based_observers;
 mod observers;
 mod plant;
 mod reference;

@@ -2,6 +2,8 @@
 
 /// Numbers of items of enumerations.
 pub const NONLINEAR: f64 = 2.0;
+pub const KALMAN: f64 = 3.0;
+pub const WINDOWED_NEWTON: f64 = 4.0;
 pub const EXACT: f64 = 1.0;
 pub const RUNGE_KUTTA: f64 = 2.0;
 pub const EULER: f64 = 3.0;
