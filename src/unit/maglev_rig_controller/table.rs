@@ -278,7 +278,7 @@ pub static DESCRIPTION: Description = Description::new("MaglevRigController", &V
          driver_gain, and take what the model lacks for an acceleration, with observer.estimate_disturbance. kalman \
          needs observer.sensor_noise to be about right, windowed_newton a window as long as noise demands and the \
          disturbance permits. They measure in metres; observer.measurement selects what the estimates are given in. \
-         Through the extended state they close the loop like the others, with observer.input_gain = controller.input_gain.",
+         Through the extended state they close the loop like the others, with observer.input_gain equal to controller.input_gain.",
         "An observer that diverges, as one with too large gains by Euler does, or whose model says that the ball is \
          beyond the coil, starts anew from the measurement and \
          counts that in observer.restarts; the outputs are finite and the voltage is within its limits, always.",
