@@ -33,6 +33,7 @@ pub struct Gain<const N: usize> {
     pub innovation_variance: f64,
 }
 
+#[expect(clippy::needless_range_loop, reason = "rows and columns of triangles, as in the book")]
 impl<const N: usize> FactoredCovariance<N> {
     /// Independent states with the given variances.
     pub const fn from_variances(variances: [f64; N]) -> Self {

@@ -49,6 +49,7 @@ pub struct RigObserver {
     estimator: Estimator,
 }
 
+#[expect(clippy::large_enum_variant, reason = "observers are plain memory: nothing is allocated")]
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 enum Estimator {
     ExtendedState(ExtendedStateObserver),
