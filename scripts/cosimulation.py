@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from ctypes import ArgumentError
 from pathlib import Path
@@ -41,7 +42,7 @@ class Fmu:
     """
 
     def __init__(self, path: Path, log: Callable[[str], None] | None = None) -> None:
-        """Load and instantiate the FMU at `path`; its messages go to `log`, or to standard output."""
+        """Load and instantiate the FMU at `path`; its messages go to `log`, or to standard error."""
         try:
             self.description = read_model_description(path)
         except OSError:
@@ -224,8 +225,15 @@ def item_number(variable: ModelVariable, name: str) -> int:
     return items[name]
 
 
-def _logger(log: Callable[[str], None] | None) -> Callable[..., None] | None:
+def _logger(log: Callable[[str], None] | None) -> Callable[..., None]:
     """Callback of either FMI version that passes the text on; the message is its last argument in both."""
-    if log is None:
-        return None
-    return lambda *arguments: log(arguments[-1].decode("utf-8", errors="replace"))
+    told = log or _tell
+    return lambda *arguments: told(arguments[-1].decode("utf-8", errors="replace"))
+
+
+def _tell(message: str) -> None:
+    """Messages of a unit go where errors go; nothing may come out of a callback of C."""
+    try:
+        print(message, file=sys.stderr, flush=True)
+    except (OSError, ValueError):
+        pass

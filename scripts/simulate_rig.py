@@ -89,7 +89,7 @@ def initialize(plant: Fmu, controller: Fmu, options: argparse.Namespace) -> None
     )
     measured, held = plant.get_reals(["sensor_voltage", "position"])
     values: dict[str, Value] = {"sensor_voltage": measured, "reference": measured, "controller.kind": options.control}
-    if options.observer:
+    if options.observer is not None:
         values["observer.kind"] = options.observer
     if options.control == "disturbance_rejection":
         values |= FOR_DISTURBANCE_REJECTION

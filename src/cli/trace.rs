@@ -52,6 +52,7 @@ impl Trace {
         assign_all(&mut *closed_loop.controller, &self.controller)?;
         closed_loop.start(0.0)?;
         closed_loop.step_size = self.step_size.unwrap_or_else(|| sample_time(&*closed_loop.controller));
+        closed_loop.check_step()?;
         let plant_outputs = real_outputs(&*closed_loop.plant);
         let controller_outputs = real_outputs(&*closed_loop.controller);
         let mut lines = Lines::new()?;

@@ -34,6 +34,17 @@ impl ClosedLoop {
         }
     }
 
+    /// Whether a unit would refuse the step for its length; of two refusals that with the smaller limit.
+    ///
+    /// # Errors
+    /// Those of [`Unit::check_step`].
+    pub fn check_step(&self) -> Result<(), UnitError> {
+        let refusals = [&self.plant, &self.controller].map(|unit| unit.check_step(self.step_size).err());
+        let limit = |refusal: &UnitError| refusal.longest_step().unwrap_or(0.0);
+        let refusal = refusals.into_iter().flatten().min_by(|one, other| limit(one).total_cmp(&limit(other)));
+        refusal.map_or(Ok(()), Err)
+    }
+
     /// Begins at `start_time` \[s\]. Nothing is exchanged.
     ///
     /// # Errors

@@ -123,6 +123,16 @@ pub enum UnitError {
     Unusable { name: &'static str, value: f64, unit: &'static str, expected: &'static str },
 }
 
+impl UnitError {
+    /// The longest step that is accepted \[s\], if a step was refused for its length.
+    pub fn longest_step(&self) -> Option<f64> {
+        match self {
+            Self::StepTooLong { limit, .. } | Self::BeyondLongestStep { limit, .. } => Some(*limit),
+            _ => None,
+        }
+    }
+}
+
 /// An exported unit: a flat array of values, indexed by value reference, and what it takes to advance them.
 ///
 /// Units are plain memory: no pointers, no resources; a clone continues bit for bit like the original, and so does
@@ -154,6 +164,9 @@ pub trait Unit: Persistent + Send {
         self.check_parameters()?;
         self.initialise(start_time)
     }
+
+    /// Whether [`Unit::advance`] would refuse a step over `duration` \[s\] for its length.
+    fn check_step(&self, duration: f64) -> Result<(), UnitError>;
 
     /// Lets `duration` \[s\], positive and finite, pass with the present inputs held.
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError>;

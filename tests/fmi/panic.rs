@@ -29,6 +29,10 @@ impl Unit for Defective {
     fn initialise(&mut self, start_time: f64) -> Result<(), UnitError> {
         self.plant.initialise(start_time)
     }
+    fn check_step(&self, _: f64) -> Result<(), UnitError> {
+        Ok(())
+    }
+
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError> {
         self.steps += 1;
         assert!(self.steps < 3, "deliberate");

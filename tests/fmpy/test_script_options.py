@@ -189,6 +189,18 @@ def test_a_full_standard_output_is_an_error(script: str) -> None:
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")
+@pytest.mark.parametrize("script", ["simulate_ball", "simulate_rig"])
+def test_a_refusal_by_a_unit_is_told_where_errors_go(script: str) -> None:
+    """Guards: reasons that FMPy printed to standard output, or lost with a traceback if that is full."""
+    command = [sys.executable, str(REPOSITORY / "scripts" / f"{script}.py"), "--dist", str(dist()), "--noise=-5", *SHORT]
+    for path in [os.devnull, "/dev/full"]:
+        with open(path, "w") as output:
+            done = subprocess.run(command, stdout=output, stderr=subprocess.PIPE, text=True, check=False)
+        assert done.returncode == 1
+        assert "sensor.noise = -5" in done.stderr and "Traceback" not in done.stderr, done.stderr
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")
 @pytest.mark.parametrize("script", [*SCRIPTS, "check_memory", "conformance"])
 def test_help_that_cannot_be_written_is_an_error(script: str) -> None:
     command = [sys.executable, str(REPOSITORY / "scripts" / f"{script}.py"), "--help"]

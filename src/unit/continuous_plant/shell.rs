@@ -184,8 +184,13 @@ impl<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U: usize>
         check_sample_time(self.values[E::SENSOR.sample_time])
     }
 
+    #[inline]
+    fn check_step(&self, duration: f64) -> Result<(), UnitError> {
+        require_affordable(duration, [self.equations.load(), self.sensor.load()])
+    }
+
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError> {
-        require_affordable(duration, [self.equations.load(), self.sensor.load()])?;
+        self.check_step(duration)?;
         let (begin, slopes) = (self.inputs(), self.slopes);
         let end = self.inputs_after(begin, duration)?;
         let (mut motion, measured) = self.sensor.move_through(

@@ -93,8 +93,13 @@ impl<C: ObserverAndLaw<N>, const N: usize> Unit for SampledController<C, N> {
         Ok(())
     }
 
+    #[inline]
+    fn check_step(&self, duration: f64) -> Result<(), UnitError> {
+        self.require_acceptable_step(duration)
+    }
+
     fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError> {
-        self.require_acceptable_step(duration)?;
+        self.check_step(duration)?;
         for k in self.clock.advance(duration) {
             self.tick_at(self.clock.time_of(k), journal);
         }

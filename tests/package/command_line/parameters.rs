@@ -55,6 +55,25 @@ fn a_name_given_twice_is_refused() {
     assert_eq!((status, message.as_str()), (Some(1), "error: mass is given twice\n"));
 }
 
+/// Guards: the limit of the controller, which the plant refused in turn.
+#[test]
+fn a_trace_names_a_step_that_both_units_accept() {
+    let directory = tempfile::tempdir().unwrap();
+    for system in ["bearing", "ball", "rig"] {
+        let trace = |step: &str| {
+            let arguments = ["trace", system, "--steps", "1", "--step-size", step];
+            maglev_fmu(directory.path(), &arguments.map(str::to_owned))
+        };
+        let (status, message) = trace("1e5");
+        assert_eq!(status, Some(1));
+        let (_, rest) = message.split_once("expected at most ").expect("a limit");
+        let (limit, _) = rest.split_once(" s").unwrap();
+        // Half of it, for all of it computes for a second.
+        let half = limit.parse::<f64>().unwrap() / 2.0;
+        assert_eq!(trace(&half.to_string()), (Some(0), String::new()), "{system}: {limit}");
+    }
+}
+
 /// Guards: a key that writes a line of its own into the message.
 #[test]
 fn keys_are_told_in_one_line() {
