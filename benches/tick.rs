@@ -119,6 +119,10 @@ impl Unit for Baseline {
         self.clock = SampleClock::new(T, start_time);
         Ok(())
     }
+    fn check_step(&self, _: f64) -> Result<(), UnitError> {
+        Ok(())
+    }
+
     fn advance(&mut self, duration: f64, _: &mut dyn Journal) -> Result<(), UnitError> {
         for _ in self.clock.advance(duration) {
             if self.iterations > 0 {
