@@ -11,7 +11,7 @@ import re
 import subprocess
 import sys
 
-from standard_calls import MEMORY
+from standard_calls import MEMORY, REPOSITORY
 from standard_output import Parser, tell
 
 TEST = "random::a_hundred_thousand_random_calls_for_a_memory_checker"
@@ -23,8 +23,10 @@ VALGRIND = ["valgrind", "--leak-check=full", f"--show-leak-kinds={KINDS}", f"--e
 def test_program() -> str:
     """Builds the tests of the C boundary; path of the program."""
     command = ["cargo", "test", "--locked", "--test", "fmi", "--no-run", "--message-format=json"]
-    built = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
-    messages = [json.loads(line) for line in built.splitlines() if line.startswith("{")]
+    built = subprocess.run(command, cwd=REPOSITORY, stdout=subprocess.PIPE, text=True)
+    if built.returncode != 0:
+        sys.exit("the test program could not be built")
+    messages = [json.loads(line) for line in built.stdout.splitlines() if line.startswith("{")]
     (program,) = (m["executable"] for m in messages if m.get("executable") and m["target"]["name"] == "fmi")
     return program
 

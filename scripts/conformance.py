@@ -23,9 +23,9 @@ import standard_calls
 from importers import ANY, CO_SIMULATION, MODEL_EXCHANGE, SCHEDULED_EXECUTION, Task, checkers, in_cpp, systems
 from importers import with_fmpy, with_fmuloader
 from lxml import etree
+from standard_calls import REPOSITORY
 from standard_output import Parser, tell
 
-REPOSITORY = Path(__file__).resolve().parent.parent
 PAGE = REPOSITORY / "docs" / "conformance.md"
 TIME_LIMIT = 120.0  # s
 

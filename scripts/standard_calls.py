@@ -7,7 +7,8 @@ from pathlib import Path
 
 from standard_output import tell
 
-TESTS = Path(__file__).resolve().parent.parent / "tests" / "fmi"
+REPOSITORY = Path(__file__).resolve().parent.parent
+TESTS = REPOSITORY / "tests" / "fmi"
 DEVIATIONS = TESTS / "standard" / "deviations.toml"
 FIGURES = TESTS / "random" / "figures.toml"
 MEMORY = TESTS / "random" / "memory.toml"

@@ -3,12 +3,18 @@
 //! An extended Kalman filter on [`DisturbedRig`] whose disturbing acceleration performs a random walk, the only process
 //! noise. Its innovation is that of the position in metres.
 
-use super::kalman_filter::KalmanFilter;
+use super::kalman_filter::{Innovation, KalmanFilter};
 use super::rig_model::{DisturbedRig, RigEstimate, is_plausible};
 use serde::{Deserialize, Serialize};
 
 /// Variances of the initial position \[m2\], velocity \[m2/s2\] and disturbance \[m2/s4\].
 const INITIAL_VARIANCES: [f64; 3] = [1e-6, 1e-4, 1.0];
+
+/// A prediction over one sample that misses by more than this part of the measured distance, and by so many of its
+/// standard deviations, was that of another ball: the filter starts anew. Without a disturbance, and thus without
+/// process noise, it would not come back, for far from the coil the model is stable and the gain goes to zero.
+const MISSED: f64 = 0.1;
+const GATE: f64 = 10.0;
 
 /// What the filter believes of its plant and its sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -43,12 +49,21 @@ impl RigKalmanObserver {
         if !self.is_first {
             filter.predict(model, voltage, &model.random_walk(disturbance_noise.unwrap_or(0.0)));
         }
+        let innovation = filter.correct(position, position_noise * position_noise);
+        // At the first sample the start may be anywhere.
+        let is_missed = !self.is_first && misses(&innovation, position);
         self.is_first = false;
-        let innovation = filter.correct(position, position_noise * position_noise).value;
-        let restarted = !(filter.is_valid() && is_plausible(&filter.state));
+        let restarted = is_missed || !(filter.is_valid() && is_plausible(&filter.state));
         self.filter = if restarted { expecting(settings, [position, 0.0, 0.0]) } else { filter };
-        RigEstimate { state: self.filter.state, innovation, restarted }
+        RigEstimate { state: self.filter.state, innovation: innovation.value, restarted }
     }
+}
+
+/// Whether the position before a sample was another one than that measured \[m\], see [`MISSED`].
+#[inline]
+fn misses(innovation: &Innovation, position: f64) -> bool {
+    let miss = innovation.value.abs();
+    miss > MISSED * position.abs() && miss * miss > GATE * GATE * innovation.variance
 }
 
 fn expecting(settings: &RigKalmanSettings, [position, velocity, disturbance]: [f64; 3]) -> KalmanFilter<3> {

@@ -176,6 +176,62 @@ fn a_lost_ball_is_found_again() {
     }
 }
 
+/// Guards: a Kalman filter without a disturbance that ran away after wrong readings and never came back.
+#[test]
+fn wrong_readings_are_forgotten() {
+    for (kind, disturbance) in KINDS.into_iter().flat_map(|kind| [(kind, 0.0), (kind, 1.0)]) {
+        for (first, reading) in [(100, 0.0), (100, -2.0), (0, 0.787)] {
+            let mut rig = closed_loop(
+                &system::RIG,
+                &[],
+                &[("observer.kind", kind), ("observer.estimate_disturbance", disturbance)],
+            );
+            for k in 0..2000 {
+                let is_wrong = (first..first + 30).contains(&k);
+                let (seen, held) = (SENSOR.voltage(SET_POINT), RIG.operating_voltage(SET_POINT));
+                set(&mut *rig.controller, "sensor_voltage", if is_wrong { reading } else { seen });
+                set(&mut *rig.controller, "voltage", held);
+                rig.controller.advance(T, &mut Silence).unwrap();
+            }
+            let off = get(&*rig.controller, "estimate.si.position") - SET_POINT;
+            let velocity = get(&*rig.controller, "estimate.si.velocity");
+            let case = format!("kind {kind}, disturbance {disturbance}, {reading} V from {first}");
+            assert!(off.abs() < 1e-5 && velocity.abs() < 1e-3, "{case}: {off} m, {velocity} m/s");
+        }
+    }
+}
+
+/// Guards: the same after the ball has lain on its stop, which the model does not know.
+#[test]
+fn a_ball_that_lay_on_its_stop_is_held_again() {
+    for (kind, disturbance) in KINDS.into_iter().flat_map(|kind| [(kind, 0.0), (kind, 1.0)]) {
+        for law in [1.0, 2.0] {
+            let controller = [
+                ("controller.kind", law),
+                ("observer.input_gain", -3705.0),
+                ("observer.kind", kind),
+                ("observer.estimate_disturbance", disturbance),
+                ("observer.voltage_source", APPLIED),
+                ("controller.voltage_max", 0.0),
+            ];
+            let mut rig = closed_loop(&system::RIG, &[], &controller);
+            for k in 0..6000 {
+                if k == 500 {
+                    assert_eq!(get(&*rig.plant, "contact"), 1.0, "the ball has fallen");
+                    set(&mut *rig.controller, "controller.voltage_max", 5.0);
+                    rig.controller.adopt_parameters();
+                }
+                rig.step().unwrap();
+            }
+            let position = get(&*rig.plant, "position");
+            let error = get(&*rig.controller, "estimate.si.position") - position;
+            let case = format!("kind {kind}, disturbance {disturbance}, law {law}");
+            assert!((position - SET_POINT).abs() < 1e-4, "{case}: {position} m");
+            assert!(error.abs() < 1e-5, "{case}: {error} m");
+        }
+    }
+}
+
 #[test]
 fn impossible_readings_are_counted_as_restarts() {
     for kind in KINDS {
