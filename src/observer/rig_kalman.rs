@@ -153,6 +153,9 @@ mod tests {
         assert!(!observer.update(&SETTINGS, 9e-3, 0.0).restarted);
         let estimate = observer.update(&SETTINGS, -1.0, 0.76);
         assert_eq!((estimate.state, estimate.restarted), ([-1.0, 0.0, 0.0], true));
+        // The ball is back in one sample, which is another miss; from then on it is followed.
+        let estimate = observer.update(&SETTINGS, 9e-3, 0.76);
+        assert_eq!((estimate.state, estimate.restarted), ([9e-3, 0.0, 0.0], true));
         let estimate = observer.update(&SETTINGS, 9e-3, 0.76);
         assert!(!estimate.restarted && (estimate.state[0] - 9e-3).abs() < 1e-4, "{estimate:?}");
     }
