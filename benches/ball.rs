@@ -1,12 +1,12 @@
-//! Cost of one step of the levitated ball's units through the C ABI: set the input, step, get the outputs.
+//! Cost of one step of the levitated ball's models through the C ABI: set the input, step, get the outputs.
 //!
 //! The currents are those of a loop on the sinusoids, whose reference the controller gets, too.
 
 mod measure;
 
 use maglev_fmu::signal::BallReference;
-use maglev_fmu::unit::system::BALL;
-use maglev_fmu::unit::{ClosedLoop, ExchangeOrder, LevitatedBallController, LevitatedBallPlant};
+use maglev_fmu::model::system::BALL;
+use maglev_fmu::model::{ClosedLoop, ExchangeOrder, LevitatedBallController, LevitatedBallPlant};
 use maglev_fmu_test::component::Component;
 use maglev_fmu_test::values::{get, set};
 use measure::{Candidate, medians, verdict};
@@ -23,16 +23,16 @@ struct Recording {
 }
 
 fn record() -> Recording {
-    let mut units = ClosedLoop::of(&BALL, ExchangeOrder::ControllerFirst);
-    units.start(0.0).expect("start values");
-    units.step_size = T;
+    let mut models = ClosedLoop::of(&BALL, ExchangeOrder::ControllerFirst);
+    models.start(0.0).expect("start values");
+    models.step_size = T;
     let mut recording = Recording::default();
     for step in 0..STEPS {
-        let sensed = [get(&*units.plant, "current"), BallReference::Sinusoids.at(T * step as f64)];
-        set(&mut *units.controller, "reference", sensed[1]);
-        units.step().expect("a step");
+        let sensed = [get(&*models.plant, "current"), BallReference::Sinusoids.at(T * step as f64)];
+        set(&mut *models.controller, "reference", sensed[1]);
+        models.step().expect("a step");
         recording.sensed.push(sensed);
-        recording.actuated.push([get(&*units.controller, "voltage"), 0.0]);
+        recording.actuated.push([get(&*models.controller, "voltage"), 0.0]);
     }
     recording
 }

@@ -1,10 +1,10 @@
-//! What the longest step that each unit accepts really costs: the units' own account says about a second.
+//! What the longest step that each model accepts really costs: the models' own account says about a second.
 
 use std::time::Instant;
 
-use maglev_fmu::unit::{Silence, UNITS, UnitError};
+use maglev_fmu::model::{Silence, MODELS, ModelError};
 
-/// Units with parameters that make their steps expensive, each in its own way.
+/// Models with parameters that make their steps expensive, each in its own way.
 const CANDIDATES: &[(&str, &[(&str, f64)])] = &[
     ("LevitatedBallPlant", &[]),
     ("LevitatedBallPlant", &[("resistance", 1e4), ("inductance_constant", 1e-9), ("lower_stop", 0.0)]),
@@ -54,30 +54,30 @@ const CANDIDATES: &[(&str, &[(&str, f64)])] = &[
 fn main() {
     println!("The longest step that is accepted");
     for (name, parameters) in CANDIDATES {
-        let kind = UNITS.iter().find(|unit| unit.description.name == *name).expect("a unit");
-        let mut unit = (kind.create)();
+        let kind = MODELS.iter().find(|model| model.description.name == *name).expect("a model");
+        let mut model = (kind.create)();
         let row = |variable: &str| kind.description.find(variable).expect("a variable").0;
         for (variable, value) in *parameters {
-            unit.values_mut()[row(variable)] = *value;
+            model.values_mut()[row(variable)] = *value;
         }
         // What the observers see never fits their models, so that they iterate as long as they may.
-        unit.initialise(0.0).expect("start values");
+        model.initialise(0.0).expect("start values");
         if let Some((sensed, _)) = ["position", "current", "sensor_voltage"]
             .into_iter()
             .filter_map(|input| kind.description.find(input))
             .find(|(_, variable)| !variable.is_calculated())
         {
             for k in 0..8 {
-                unit.values_mut()[sensed] += 1e-3 * f64::from(k % 3);
-                let sample_time = unit.values()[row("sample_time")];
-                unit.advance(sample_time, &mut Silence).expect("a step");
+                model.values_mut()[sensed] += 1e-3 * f64::from(k % 3);
+                let sample_time = model.values()[row("sample_time")];
+                model.advance(sample_time, &mut Silence).expect("a step");
             }
         }
-        let Err(UnitError::StepTooLong { limit, .. }) = unit.advance(1e15, &mut Silence) else {
-            unreachable!("no unit here takes such a step")
+        let Err(ModelError::StepTooLong { limit, .. }) = model.advance(1e15, &mut Silence) else {
+            unreachable!("no model here takes such a step")
         };
         let begin = Instant::now();
-        unit.advance(limit, &mut Silence).expect("the longest step");
+        model.advance(limit, &mut Silence).expect("the longest step");
         let (seconds, target) = (begin.elapsed().as_secs_f64(), 1.5);
         let word = if seconds <= target { "met" } else { "MISSED" };
         println!("{seconds:>6.2} s, target <= {target} s {word}: {limit:.3e} s of {name} {parameters:?}");

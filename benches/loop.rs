@@ -1,11 +1,11 @@
-//! Ten seconds of the paper's loop, 10 000 steps of 1 ms, two packaged units in the host: what a study pays per run.
+//! Ten seconds of the paper's loop, 10 000 steps of 1 ms, two packaged models in the host: what a study pays per run.
 
 mod measure;
 
 use std::error::Error;
 use std::path::Path;
 
-use maglev_fmu::host::{ExchangeOrder, Fmu, Logging, TwoUnitLoop};
+use maglev_fmu::host::{ExchangeOrder, Fmu, Logging, ControlLoop};
 use maglev_fmu::package::{FmiVersion, GenerationTime, Library, build};
 use measure::{Candidate, medians, verdict};
 
@@ -13,8 +13,8 @@ const STEP_SIZE: f64 = 1e-3;
 const STEPS: usize = 10_000;
 const ROUNDS: usize = 21;
 
-/// The loop, its units and what is recorded of them.
-struct PackagedLoop(TwoUnitLoop);
+/// The loop, its models and what is recorded of them.
+struct PackagedLoop(ControlLoop);
 
 impl PackagedLoop {
     fn open(directory: &Path, settings: &[(&str, &str)]) -> Result<Self, Box<dyn Error>> {
@@ -25,16 +25,16 @@ impl PackagedLoop {
         for (name, item) in settings {
             controller.set_by_name(name, *item)?;
         }
-        let mut units = TwoUnitLoop::connect(
+        let mut models = ControlLoop::connect(
             controller,
             instance("MagneticBearingPlant")?,
             ExchangeOrder::ControllerFirst,
             &[("position_measured", "position"), ("voltage_measured", "voltage_applied")],
             &[("voltage", "voltage")],
         )?;
-        units.record(&[("plant", "position"), ("controller", "voltage"), ("controller", "estimate.flux")])?;
-        units.initialise(0.0, None, STEP_SIZE)?;
-        Ok(Self(units))
+        models.record(&[("plant", "position"), ("controller", "voltage"), ("controller", "estimate.flux")])?;
+        models.initialise(0.0, None, STEP_SIZE)?;
+        Ok(Self(models))
     }
 
     /// Goes on for ten seconds, as many times as asked.
@@ -58,12 +58,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("FMI 2.0, kalman and flux_cascade", FmiVersion::Two, &kalman),
         ("FMI 3.0, kalman and flux_cascade", FmiVersion::Three, &kalman),
     ] {
-        let mut units = open(version, settings)?;
-        candidates.push(Candidate { name, operations: 1, run: Box::new(move || units.run()) });
+        let mut models = open(version, settings)?;
+        candidates.push(Candidate { name, operations: 1, run: Box::new(move || models.run()) });
     }
     let medians = medians(&mut candidates, ROUNDS);
     println!(
-        "10 s of the loop, 10 000 steps, two packaged units in the host, three signals recorded, medians"
+        "10 s of the loop, 10 000 steps, two packaged models in the host, three signals recorded, medians"
     );
     for (candidate, median) in candidates.iter().zip(medians) {
         verdict(candidate.name, median * 1e-6, "ms", Some(10.0), None);

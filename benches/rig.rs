@@ -1,4 +1,4 @@
-//! Time of one step of the rig's units through the C ABI, as an importer pays for it: set two inputs, `doStep`, get four
+//! Time of one step of the rig's models through the C ABI, as an importer pays for it: set two inputs, `doStep`, get four
 //! outputs, on the signals of a PID loop with a millivolt of noise and a moving reference. Beside it the observers
 //! alone, which is what a tuning loop pays per sample.
 
@@ -10,8 +10,8 @@ use maglev_fmu::observer::extended_state::{
     ExtendedState, ExtendedStateModel, Injection, LinearInjection, NonlinearInjection, gains_from_bandwidth,
 };
 use maglev_fmu::observer::extended_state_exact::ExactPredictor;
-use maglev_fmu::unit::system::RIG;
-use maglev_fmu::unit::{ClosedLoop, ExchangeOrder, MaglevRigController, MaglevRigPlant};
+use maglev_fmu::model::system::RIG;
+use maglev_fmu::model::{ClosedLoop, ExchangeOrder, MaglevRigController, MaglevRigPlant};
 use maglev_fmu_test::component::Component;
 use maglev_fmu_test::values::{get, set};
 use measure::{Candidate, medians, verdict};
@@ -28,18 +28,18 @@ struct Recording {
 }
 
 fn record() -> Recording {
-    let mut units = ClosedLoop::of(&RIG, ExchangeOrder::ControllerFirst);
-    set(&mut *units.plant, "sensor.noise", 1e-3);
-    units.start(0.0).expect("start values");
-    units.step_size = T;
+    let mut models = ClosedLoop::of(&RIG, ExchangeOrder::ControllerFirst);
+    set(&mut *models.plant, "sensor.noise", 1e-3);
+    models.start(0.0).expect("start values");
+    models.step_size = T;
     let mut recording = Recording::default();
     for k in 0..STEPS {
-        let reading = get(&*units.plant, "sensor_voltage_measured");
+        let reading = get(&*models.plant, "sensor_voltage_measured");
         let target = -1.50868 + 0.15 * (core::f64::consts::PI * T * k as f64).sin();
-        set(&mut *units.controller, "reference", target);
-        units.step().expect("a step");
+        set(&mut *models.controller, "reference", target);
+        models.step().expect("a step");
         recording.controller.push([reading, target]);
-        recording.plant.push([get(&*units.controller, "voltage"), 0.0]);
+        recording.plant.push([get(&*models.controller, "voltage"), 0.0]);
     }
     recording
 }
@@ -77,7 +77,7 @@ fn main() {
     let (kind, discretisation) = (("observer.kind", 2.0), "observer.discretisation");
     let through_extended_state =
         [("controller.kind", 2.0), ("observer.input_gain", -3705.0), ("observer.bandwidth", 300.0)];
-    let units = [
+    let models = [
         ("linear, exact, PID", controller(&[]), &readings),
         ("linear, exact, disturbance rejection", controller(&through_extended_state), &readings),
         ("linear, Runge-Kutta", controller(&[(discretisation, 2.0)]), &readings),
@@ -104,7 +104,7 @@ fn main() {
         ),
         ("plant", plant(), &voltages),
     ];
-    let mut candidates: Vec<Candidate> = units
+    let mut candidates: Vec<Candidate> = models
         .into_iter()
         .map(|(name, mut component, inputs)| Candidate {
             name,

@@ -1,5 +1,5 @@
 //! Cost of saving and restoring the state of an instance through the C ABI, of its bytes, and how many there are; for
-//! every unit, and for the observers of the magnetic bearing that keep many samples.
+//! every model, and for the observers of the magnetic bearing that keep many samples.
 
 mod measure;
 
@@ -12,7 +12,7 @@ use maglev_fmu::fmi::fmi3::{
     fmi3SetFMUState,
 };
 use maglev_fmu::fmi::{Callback, Instance, Interface, LONGEST_SAVED_STATE, Logger};
-use maglev_fmu::unit::{MAGNETIC_BEARING_CONTROLLER, UNITS, UnitType};
+use maglev_fmu::model::{MAGNETIC_BEARING_CONTROLLER, MODELS, ModelType};
 use measure::{Candidate, medians, verdict};
 
 /// What one call does.
@@ -29,14 +29,14 @@ struct Subject {
 }
 
 impl Subject {
-    fn new(unit: &UnitType, parameters: &[(&str, f64)]) -> Self {
-        let mut unit = (unit.create)();
+    fn new(model: &ModelType, parameters: &[(&str, f64)]) -> Self {
+        let mut model = (model.create)();
         for (name, value) in parameters {
-            let (reference, _) = unit.description().find(name).expect("a variable of the table");
-            unit.values_mut()[reference] = *value;
+            let (reference, _) = model.description().find(name).expect("a variable of the table");
+            model.values_mut()[reference] = *value;
         }
         let logger = Logger::new(Callback::None, c"subject", false).unwrap();
-        let instance = Instance::new(unit, Interface::CoSimulation, logger).unwrap();
+        let instance = Instance::new(model, Interface::CoSimulation, logger).unwrap();
         let handle: *mut c_void = Box::into_raw(Box::new(instance)).cast();
         let (mut state, mut size) = (null_mut(), 0);
         // SAFETY: a live handle, room for the results.
@@ -102,13 +102,13 @@ fn repeated(mut call: impl FnMut()) -> impl FnMut() {
 }
 
 fn main() {
-    let controller: &UnitType = &MAGNETIC_BEARING_CONTROLLER;
-    let plain = UNITS.iter().map(|unit| (unit.description.name, *unit, &[][..]));
+    let controller: &ModelType = &MAGNETIC_BEARING_CONTROLLER;
+    let plain = MODELS.iter().map(|model| (model.description.name, *model, &[][..]));
     let kalman: &[(&str, f64)] = &[("observer.kind", 4.0)];
     let window: &[(&str, f64)] = &[("observer.window", 64.0)];
     let long = [("bearing, kalman", controller, kalman), ("bearing, window of 64", controller, window)];
-    for (name, unit, parameters) in plain.chain(long) {
-        let subject = || Subject::new(unit, parameters);
+    for (name, model, parameters) in plain.chain(long) {
+        let subject = || Subject::new(model, parameters);
         let (mut saved, saved_anew, restored) = (subject(), subject(), subject());
         let (mut serialised, mut deserialised) = (subject(), subject());
         let size = saved.bytes.len() as f64;

@@ -1,8 +1,8 @@
 //! Cost of one step through the C ABI: set the input, step, get the outputs; for every observer of the controller, and
 //! for the plant.
 //!
-//! Baselines in the same run: a unit that does nothing behind the same boundary, and the paper's algorithm taken
-//! literally (general 3x3 solve, always d iterations) inside the same unit.
+//! Baselines in the same run: a model that does nothing behind the same boundary, and the paper's algorithm taken
+//! literally (general 3x3 solve, always d iterations) inside the same model.
 //!
 //! The positions are those of a noise-free loop, and for the observers that are made for noise, and once for the
 //! Newton observer, the same with 1e-7 m of noise, which the Newton observers have to iterate for.
@@ -12,11 +12,11 @@ mod measure;
 use maglev_fmu::controller::bearing_feedback::{self, Gains, Law};
 use maglev_fmu::plant::magnetic_bearing::State;
 use maglev_fmu::signal::GaussianNoise;
-use maglev_fmu::unit::sample_clock::SampleClock;
-use maglev_fmu::unit::system::BEARING;
-use maglev_fmu::unit::{
-    ClosedLoop, Description, ExchangeOrder, Journal, MagneticBearingController, MagneticBearingPlant, Unit,
-    UnitError,
+use maglev_fmu::model::sample_clock::SampleClock;
+use maglev_fmu::model::system::BEARING;
+use maglev_fmu::model::{
+    ClosedLoop, Description, ExchangeOrder, Journal, MagneticBearingController, MagneticBearingPlant, Model,
+    ModelError,
 };
 use maglev_fmu_test::component::{Component, reference};
 use maglev_fmu_test::printed_newton;
@@ -43,17 +43,17 @@ struct Recording {
 }
 
 fn record() -> Recording {
-    let mut units = ClosedLoop::of(&BEARING, ExchangeOrder::ControllerFirst);
-    units.start(0.0).expect("start values");
-    units.step_size = T;
+    let mut models = ClosedLoop::of(&BEARING, ExchangeOrder::ControllerFirst);
+    models.start(0.0).expect("start values");
+    models.step_size = T;
     let mut noise = GaussianNoise::new(1, 0);
     let mut recording = Recording::default();
     for _ in 0..STEPS {
-        let position = get(&*units.plant, "position");
-        units.step().expect("a step");
+        let position = get(&*models.plant, "position");
+        models.step().expect("a step");
         recording.positions.push([position]);
         recording.noisy_positions.push([position + NOISE * noise.sample()]);
-        recording.voltages.push([get(&*units.controller, "voltage")]);
+        recording.voltages.push([get(&*models.controller, "voltage")]);
     }
     recording
 }
@@ -104,7 +104,7 @@ impl Baseline {
     }
 }
 
-impl Unit for Baseline {
+impl Model for Baseline {
     fn description(&self) -> &'static Description {
         self.controller.description()
     }
@@ -115,15 +115,15 @@ impl Unit for Baseline {
         self.controller.values_mut()
     }
     fn adopt_parameters(&mut self) {}
-    fn initialise(&mut self, start_time: f64) -> Result<(), UnitError> {
+    fn initialise(&mut self, start_time: f64) -> Result<(), ModelError> {
         self.clock = SampleClock::new(T, start_time);
         Ok(())
     }
-    fn check_step(&self, _: f64) -> Result<(), UnitError> {
+    fn check_step(&self, _: f64) -> Result<(), ModelError> {
         Ok(())
     }
 
-    fn advance(&mut self, duration: f64, _: &mut dyn Journal) -> Result<(), UnitError> {
+    fn advance(&mut self, duration: f64, _: &mut dyn Journal) -> Result<(), ModelError> {
         for _ in self.clock.advance(duration) {
             if self.iterations > 0 {
                 self.tick();
@@ -134,9 +134,9 @@ impl Unit for Baseline {
 }
 
 /// A controller, or what passes for one, with some values.
-fn controller(unit: impl Unit + 'static, values: &[(&str, f64)]) -> Component<1> {
+fn controller(model: impl Model + 'static, values: &[(&str, f64)]) -> Component<1> {
     let outputs = ["voltage", "estimate.position", "estimate.velocity", "estimate.flux"];
-    Component::new(unit, ["position"], outputs, values)
+    Component::new(model, ["position"], outputs, values)
 }
 
 fn plant() -> Component<1> {
@@ -150,7 +150,7 @@ fn main() {
     let literal = |iterations| controller(Baseline::new(iterations), &[]);
     let (exact, kind) = (("observer.map", 1.0), "observer.kind");
     let candidates = [
-        ("empty unit", literal(0), &positions),
+        ("empty model", literal(0), &positions),
         ("newton, d = 10", shipped(&[]), &positions),
         ("newton, d = 100", shipped(&[("observer.max_iterations", 100.0)]), &positions),
         ("literal algorithm, d = 10", literal(10), &positions),
@@ -180,11 +180,11 @@ fn main() {
     };
     println!("Targets");
     verdict("newton, d = 10", newton_10, "ns", Some(150.0), None);
-    verdict("newton, d = 10, against the empty unit", newton_10 / empty, "x", Some(3.0), None);
+    verdict("newton, d = 10, against the empty model", newton_10 / empty, "x", Some(3.0), None);
     verdict("literal against shipped, d = 10", literal_10 / newton_10, "x", None, Some(5.0));
     verdict("literal against shipped, d = 100", literal_100 / newton_100, "x", None, Some(30.0));
     verdict("newton, exact map", exact, "ns", Some(150.0), None);
     verdict("kalman", kalman, "ns", Some(200.0), None);
     verdict("window of 30 samples", window, "ns", Some(5000.0), None);
-    verdict("plant, against the empty unit", plant / empty, "x", Some(3.0), None);
+    verdict("plant, against the empty model", plant / empty, "x", Some(3.0), None);
 }

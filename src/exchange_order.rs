@@ -1,6 +1,6 @@
-//! When values travel between the two units of a loop.
+//! When values travel between the two models of a loop.
 
-/// In which order values travel between the two units of a loop.
+/// In which order values travel between the two models of a loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExchangeOrder {
     /// As on a rig with a fast processor: the plant is sampled, the controller computes, the plant moves on with the

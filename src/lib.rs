@@ -1,4 +1,4 @@
-//! Magnetic levitation and magnetic bearings as FMI 2.0 and FMI 3.0 units.
+//! Magnetic levitation and magnetic bearings as FMUs, FMI 2.0 and FMI 3.0.
 
 #[cfg(feature = "tools")]
 pub mod causes;
@@ -21,4 +21,4 @@ pub mod scalar;
 pub mod signal;
 #[cfg(feature = "tools")]
 pub mod study;
-pub mod unit;
+pub mod model;

@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use maglev_fmu::package::{self, GenerationTime, Library};
 use maglev_fmu::parameter_file::ParameterFile;
-use maglev_fmu::unit::{Description, StartValues};
+use maglev_fmu::model::{Description, StartValues};
 
 use super::output::{report, say};
 
-/// Pack all units for FMI 2.0 and FMI 3.0, controllers of FMI 3.0 also with clocks
+/// Pack all models for FMI 2.0 and FMI 3.0, controllers of FMI 3.0 also with clocks
 #[derive(Debug, Args)]
 pub struct Build {
     /// Directory for the packages, which go to its subdirectories fmi2, fmi3 and fmi3-clocked
@@ -19,7 +19,7 @@ pub struct Build {
     /// Shared library to pack instead of the one that was built with this program; may be given once per platform
     #[arg(long = "library", value_name = "PATH")]
     libraries: Vec<PathBuf>,
-    /// Parameter file whose values become the start values of its unit, such as `tune` writes; once per unit
+    /// Parameter file whose values become the start values of its model, such as `tune` writes; once per model
     #[arg(long = "parameters", value_name = "FILE")]
     parameters: Vec<PathBuf>,
 }

@@ -10,9 +10,9 @@ use maglev_fmu::study::EXPERIMENTS;
 use super::output::OutputError;
 use super::{build, describe, ending, reproduce, trace, tune};
 
-/// Magnetic levitation and magnetic bearings as FMI 2.0 and FMI 3.0 units.
+/// Magnetic levitation and magnetic bearings as FMUs, FMI 2.0 and FMI 3.0.
 ///
-/// Without a command: builds the units into dist, reproduces everything into results and prints the verdicts.
+/// Without a command: builds the models into dist, reproduces everything into results and prints the verdicts.
 /// Ends with status 0, 1 after an error, 2 for a wrong command line, and 141, quietly, when the reader of standard output has closed the pipe.
 #[derive(Debug, Parser)]
 #[command(version)]

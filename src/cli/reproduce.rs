@@ -14,7 +14,7 @@ use super::output::{OutputError, say};
 /// Where results go unless told otherwise.
 pub const RESULTS: &str = "results";
 
-/// Build the units, run the papers' experiments through them and judge the papers' claims
+/// Build the models, run the papers' experiments through them and judge the papers' claims
 #[derive(Debug, Args)]
 pub struct Reproduce {
     /// Experiments to run, all if none is named

@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 use std::error::Error;
 
 use clap::Args;
-use maglev_fmu::unit::system::{System, systems};
-use maglev_fmu::unit::variable::{Causality, Kind, Variable};
-use maglev_fmu::unit::{ClosedLoop, ExchangeOrder, Unit};
+use maglev_fmu::model::system::{System, systems};
+use maglev_fmu::model::variable::{Causality, Kind, Variable};
+use maglev_fmu::model::{ClosedLoop, ExchangeOrder, Model};
 
 use super::output::Lines;
 
@@ -72,53 +72,53 @@ impl Trace {
 }
 
 /// \[s\]
-fn sample_time(controller: &dyn Unit) -> f64 {
+fn sample_time(controller: &dyn Model) -> f64 {
     let (reference, _) = controller.description().find("sample_time").expect("a controller samples");
     controller.values()[reference]
 }
 
 /// All real outputs with their value references, in the order of the table.
-fn real_outputs(unit: &dyn Unit) -> Vec<(usize, &'static str)> {
+fn real_outputs(model: &dyn Model) -> Vec<(usize, &'static str)> {
     let is_real_output =
         |row: &Variable| row.causality == Causality::Output && matches!(row.kind, Kind::Real(_));
-    let rows = unit.description().variables.iter().enumerate();
+    let rows = model.description().variables.iter().enumerate();
     rows.filter(|(_, row)| is_real_output(row)).map(|(reference, row)| (reference, row.name)).collect()
 }
 
-fn header(unit: &str, outputs: &[(usize, &str)]) -> String {
-    outputs.iter().map(|(_, name)| format!("{unit}.{name}")).collect::<Vec<_>>().join(",")
+fn header(model: &str, outputs: &[(usize, &str)]) -> String {
+    outputs.iter().map(|(_, name)| format!("{model}.{name}")).collect::<Vec<_>>().join(",")
 }
 
-fn bits(unit: &dyn Unit, outputs: &[(usize, &str)]) -> Vec<String> {
-    outputs.iter().map(|(reference, _)| format!("{:016x}", unit.values()[*reference].to_bits())).collect()
+fn bits(model: &dyn Model, outputs: &[(usize, &str)]) -> Vec<String> {
+    outputs.iter().map(|(reference, _)| format!("{:016x}", model.values()[*reference].to_bits())).collect()
 }
 
 /// Carries out each `NAME=VALUE`; no name may be given twice.
-fn assign_all(unit: &mut dyn Unit, assignments: &[String]) -> Result<(), Box<dyn Error>> {
+fn assign_all(model: &mut dyn Model, assignments: &[String]) -> Result<(), Box<dyn Error>> {
     let mut names = BTreeSet::new();
     for assignment in assignments {
         let name = assignment.split('=').next().unwrap_or_default();
         if !names.insert(name) {
             return Err(format!("{name} is given twice").into());
         }
-        assign(unit, assignment)?;
+        assign(model, assignment)?;
     }
     Ok(())
 }
 
 /// Carries out `NAME=VALUE`.
-fn assign(unit: &mut dyn Unit, assignment: &str) -> Result<(), Box<dyn Error>> {
+fn assign(model: &mut dyn Model, assignment: &str) -> Result<(), Box<dyn Error>> {
     let (name, text) =
         assignment.split_once('=').ok_or_else(|| format!("{assignment}: expected NAME=VALUE"))?;
-    let description = unit.description();
+    let description = model.description();
     let (reference, variable) =
         description.find(name).ok_or_else(|| format!("{} has no variable {name}", description.name))?;
     if variable.is_calculated() {
-        return Err(format!("{name} is calculated by the unit and cannot be set").into());
+        return Err(format!("{name} is calculated by the model and cannot be set").into());
     }
     let number = parse(variable, text)?;
     variable.check(number)?;
-    unit.values_mut()[reference] = number;
+    model.values_mut()[reference] = number;
     Ok(())
 }
 

@@ -3,8 +3,8 @@
 use super::floating_point::in_default_environment;
 use super::model_exchange::require_computed;
 use super::{CallError, FmiVersion, Instance, Phase};
-use crate::unit::LARGEST_TABLE;
-use crate::unit::variable::{Causality, Kind, Variability, Variable};
+use crate::model::LARGEST_TABLE;
+use crate::model::variable::{Causality, Kind, Variability, Variable};
 
 /// A data type of a standard: its name there and the kinds of variables it carries.
 pub(super) struct DataType {
@@ -27,7 +27,7 @@ impl Instance {
     ) -> Result<(), CallError> {
         self.refresh_before_first_step()?;
         self.evaluate();
-        let source = self.unit.values();
+        let source = self.model.values();
         for reference in references {
             require_computed(self.find(data_type, *reference)?, source[*reference as usize])?;
         }
@@ -57,7 +57,7 @@ impl Instance {
         if parameters_changed && !is_before_first_step {
             return self.tune(references.iter().zip(values).map(|(row, value)| (*row, convert(*value))));
         }
-        let target = self.unit.values_mut();
+        let target = self.model.values_mut();
         for (reference, value) in references.iter().zip(values) {
             target[*reference as usize] = convert(*value);
         }
@@ -73,16 +73,16 @@ impl Instance {
     /// none.
     fn tune(&mut self, assignments: impl Iterator<Item = (u32, f64)>) -> Result<(), CallError> {
         let mut before = [0.0; LARGEST_TABLE];
-        let values = self.unit.values_mut();
+        let values = self.model.values_mut();
         let before = &mut before[..values.len()];
         before.copy_from_slice(values);
         for (reference, value) in assignments {
             values[reference as usize] = value;
         }
-        let unit = &mut self.unit;
-        let fit = in_default_environment(|| unit.check_parameters().map(|()| unit.adopt_parameters()));
+        let model = &mut self.model;
+        let fit = in_default_environment(|| model.check_parameters().map(|()| model.adopt_parameters()));
         if let Err(error) = fit {
-            unit.values_mut().copy_from_slice(before);
+            model.values_mut().copy_from_slice(before);
             return Err(error.into());
         }
         self.needs_evaluation = true;
@@ -161,7 +161,7 @@ impl Instance {
     }
 
     /// Before the first step parameters and inputs may be set, afterwards inputs and tunable parameters. An importer
-    /// that integrates the unit may set continuous inputs and states in continuous time, and by FMI 3.0 at an event also
+    /// that integrates the model may set continuous inputs and states in continuous time, and by FMI 3.0 at an event also
     /// states that do not jump (section 2.3.5; not so FMI 2.0.5, table in section 3.2.3). Within a step registered
     /// continuous inputs may be set, too.
     #[inline(never)]
@@ -194,7 +194,7 @@ impl Instance {
                 }
                 _ => "a continuous state",
             },
-            _ => "calculated by the unit",
+            _ => "calculated by the model",
         };
         Err(CallError::NotSettable { name: variable.name, why, phase: self.phase.name() })
     }

@@ -1,6 +1,6 @@
 //! The one way from C into an instance, and back to the importer's logger.
 //!
-//! A call has two parts. Within the first the unit computes, in a floating-point environment of its own, a panic is
+//! A call has two parts. Within the first the model computes, in a floating-point environment of its own, a panic is
 //! caught, and messages are collected. In the second they are sent: the logger may throw or jump away over what is on
 //! the stack by then, which is plain memory, and finds the instance as the call has left it. Other callbacks are called
 //! between two such calls.

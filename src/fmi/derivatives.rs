@@ -1,12 +1,12 @@
 //! Derivatives: directional and adjoint ones between variables, and those of inputs and outputs with respect to time.
 
 use super::{CallError, Instance, Interface, Phase};
-use crate::unit::ContinuousUnit;
-use crate::unit::continuous::{Stage, Tangents};
-use crate::unit::value::ValueError;
-use crate::unit::variable::{Causality, Kind, Variability, Variable};
+use crate::model::ContinuousModel;
+use crate::model::continuous::{Stage, Tangents};
+use crate::model::value::ValueError;
+use crate::model::variable::{Causality, Kind, Variability, Variable};
 
-/// What the sampled units answer: their outputs are held between ticks, so that at a communication point they depend on
+/// What the sampled models answer: their outputs are held between ticks, so that at a communication point they depend on
 /// no input, and every derivative would be zero.
 const HELD: CallError = CallError::NotOffered("its outputs are held between ticks");
 
@@ -19,10 +19,10 @@ impl Instance {
         seed: &[f64],
         sensitivity: &mut [f64],
     ) -> Result<(), CallError> {
-        let unit = Differentiated::new(self, unknowns, knowns)?;
-        let tangents = unit.tangents(knowns.iter().copied().zip(seed.iter().copied()));
+        let model = Differentiated::new(self, unknowns, knowns)?;
+        let tangents = model.tangents(knowns.iter().copied().zip(seed.iter().copied()));
         let along_seed = |unknown: u32| tangents.of_value(unknown as usize);
-        fill(unknowns, sensitivity, along_seed, "the derivative along the seed of", unit.variables)
+        fill(unknowns, sensitivity, along_seed, "the derivative along the seed of", model.variables)
     }
 
     /// Sensitivity of the unknowns, weighted with `seed`, to each known.
@@ -33,13 +33,13 @@ impl Instance {
         seed: &[f64],
         sensitivity: &mut [f64],
     ) -> Result<(), CallError> {
-        let unit = Differentiated::new(self, unknowns, knowns)?;
+        let model = Differentiated::new(self, unknowns, knowns)?;
         let along_seed = |known: u32| {
-            let tangents = unit.tangents(core::iter::once((known, 1.0)));
+            let tangents = model.tangents(core::iter::once((known, 1.0)));
             let terms = unknowns.iter().zip(seed);
             terms.map(|(unknown, seed)| tangents.of_value(*unknown as usize) * seed).sum()
         };
-        fill(knowns, sensitivity, along_seed, "the derivative of the weighted unknowns by", unit.variables)
+        fill(knowns, sensitivity, along_seed, "the derivative of the weighted unknowns by", model.variables)
     }
 
     /// First derivatives of outputs with respect to time at the end of the last step; 0 for outputs that are held.
@@ -59,8 +59,8 @@ impl Instance {
         }
         self.evaluate();
         let (rows, variables) = (self.rows, self.variables);
-        let unit = self.unit.continuous().ok_or(HELD)?;
-        let slopes = unit.output_slopes(&rows);
+        let model = self.model.continuous().ok_or(HELD)?;
+        let slopes = model.output_slopes(&rows);
         let slope = |output: u32| slopes.of_value(output as usize);
         fill(references, derivatives, slope, "the derivative with respect to time of", variables)
     }
@@ -86,9 +86,9 @@ impl Instance {
                 return Err(ValueError::SlopeNotFinite { name, value, unit: variable.unit() }.into());
             }
         }
-        let unit = self.unit.continuous().ok_or(HELD)?;
+        let model = self.model.continuous().ok_or(HELD)?;
         for (reference, derivative) in references.iter().zip(derivatives) {
-            unit.set_input_slope(*reference as usize, *derivative);
+            model.set_input_slope(*reference as usize, *derivative);
         }
         Ok(())
     }
@@ -131,16 +131,16 @@ impl Instance {
     }
 }
 
-/// A unit whose unknowns and knowns have been checked.
+/// A model whose unknowns and knowns have been checked.
 struct Differentiated<'a> {
-    unit: &'a dyn ContinuousUnit,
+    model: &'a dyn ContinuousModel,
     variables: &'static [Variable],
     is_initialising: bool,
 }
 
 impl<'a> Differentiated<'a> {
     fn new(instance: &'a mut Instance, unknowns: &[u32], knowns: &[u32]) -> Result<Self, CallError> {
-        if instance.unit.continuous().is_none() {
+        if instance.model.continuous().is_none() {
             return Err(HELD);
         }
         for reference in unknowns {
@@ -158,13 +158,13 @@ impl<'a> Differentiated<'a> {
         instance.refresh_before_first_step()?;
         instance.evaluate();
         let (is_initialising, variables) = (instance.is_initialising(), instance.variables);
-        Ok(Self { unit: instance.unit.continuous().ok_or(HELD)?, variables, is_initialising })
+        Ok(Self { model: instance.model.continuous().ok_or(HELD)?, variables, is_initialising })
     }
 
     /// How fast every value changes when `knowns` do so.
     fn tangents(&self, knowns: impl Iterator<Item = (u32, f64)>) -> Tangents {
         let stage = if self.is_initialising { Stage::Initialisation } else { Stage::Running };
-        self.unit.tangents(stage, &mut knowns.map(|(known, along)| (known as usize, along)))
+        self.model.tangents(stage, &mut knowns.map(|(known, along)| (known as usize, along)))
     }
 }
 

@@ -2,8 +2,8 @@
 
 use super::log::CategoryName;
 use super::{StateError, Status};
-use crate::unit::UnitError;
-use crate::unit::value::ValueError;
+use crate::model::ModelError;
+use crate::model::value::ValueError;
 use thiserror::Error;
 
 /// Refusal of a call; the boundary logs it after the function's name and returns [`CallError::status`].
@@ -40,7 +40,7 @@ pub enum CallError {
     )]
     TimeGoesBack { got: f64, earliest: f64 },
     #[error(transparent)]
-    Unit(#[from] UnitError),
+    Model(#[from] ModelError),
     #[error("{name} (value reference {reference}) is a variable, not a clock")]
     NoClock { name: &'static str, reference: u32 },
     #[error("{name} (value reference {reference}) is a clock, not {asked}")]
@@ -73,7 +73,7 @@ pub enum CallError {
     StateRejected(ValueError),
     #[error("the category {0} is not declared in the model description: expected one of {categories}", categories = super::log::CategoryList)]
     UnknownCategory(CategoryName),
-    #[error("not offered by this unit: {0}")]
+    #[error("not offered by this model: {0}")]
     NotOffered(&'static str),
     #[error("this function tells nothing about the fmi2StatusKind {0}")]
     NoSuchStatus(i32),

@@ -38,7 +38,7 @@ impl Instance {
         if is_active {
             self.run_due_tick()?;
         }
-        let clock = sampled(&mut *self.unit)?.clock();
+        let clock = sampled(&mut *self.model)?.clock();
         // A tick that is still due belongs to this event; the next one is that after it.
         let next = clock.next_number().saturating_add(i64::from(clock.is_due()));
         let next_event_time = Some(clock.time_of(next));
@@ -46,10 +46,10 @@ impl Instance {
     }
 
     fn run_due_tick(&mut self) -> Result<(), CallError> {
-        let unit = sampled(&mut *self.unit)?;
-        if unit.clock().is_due() {
-            let time = unit.clock_mut().take();
-            unit.tick(time, &mut self.logger);
+        let model = sampled(&mut *self.model)?;
+        if model.clock().is_due() {
+            let time = model.clock_mut().take();
+            model.tick(time, &mut self.logger);
         }
         Ok(())
     }

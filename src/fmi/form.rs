@@ -1,9 +1,9 @@
-//! The forms in which a unit is packaged.
+//! The forms in which a model is packaged.
 
 use super::FmiVersion;
-use crate::unit::{Description, Edition};
+use crate::model::{Description, Edition};
 
-/// Version of the standard and edition of the unit: one package each.
+/// Version of the standard and edition of the model: one package each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Form {
     pub version: FmiVersion,
@@ -26,7 +26,7 @@ impl Form {
         }
     }
 
-    /// The forms in which a unit is packaged.
+    /// The forms in which a model is packaged.
     pub fn all_of(description: &Description) -> impl Iterator<Item = Self> {
         Self::ALL.into_iter().filter(|form| form.edition.suits(description))
     }

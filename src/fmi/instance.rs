@@ -1,4 +1,4 @@
-//! An instantiated unit with its life cycle.
+//! An instantiated model with its life cycle.
 
 use core::fmt;
 
@@ -9,17 +9,17 @@ use super::intermediate_update::{IntermediateUpdate, StepInProgress};
 use super::saved_state::Life;
 use super::ticking::ClockStates;
 use super::{CallError, CommunicationPoint, Function, Interface, Logger, Phase, SavedState, StateError};
-use crate::unit::sampled::ClockVariable;
-use crate::unit::variable::Variable;
-use crate::unit::{ContinuousRows, Edition, Journal, Solver, TIME, Topic, Unit};
+use crate::model::sampled::ClockVariable;
+use crate::model::variable::Variable;
+use crate::model::{ContinuousRows, Edition, Journal, Solver, TIME, Topic, Model};
 
 /// What a handle (`fmi2Component`, `fmi3Instance`) points to.
 pub struct Instance {
-    pub(super) unit: Box<dyn Unit>,
+    pub(super) model: Box<dyn Model>,
     /// As made, for reset.
     pub(super) start: SavedState,
     pub(super) variables: &'static [Variable],
-    /// What the importer has read of the unit.
+    /// What the importer has read of the model.
     pub(super) edition: Edition,
     /// Where the table holds what moves in continuous time.
     pub(super) rows: ContinuousRows,
@@ -27,7 +27,7 @@ pub struct Instance {
     pub(super) phase: Phase,
     pub(super) logger: Logger,
     pub(super) communication: CommunicationPoint,
-    /// How far an importer that integrates the unit may go back.
+    /// How far an importer that integrates the model may go back.
     pub(super) earliest_time: EarliestTime,
     pub(super) start_time: f64,
     /// Whether a value was set since the calculated ones were last computed, before the first step.
@@ -44,15 +44,15 @@ pub struct Instance {
 }
 
 impl Instance {
-    /// An instance of any unit, not only of those the library knows by token, in its plain edition.
-    pub fn new(mut unit: Box<dyn Unit>, interface: Interface, logger: Logger) -> Result<Self, StateError> {
-        say_who_solves(&mut *unit, interface);
-        let description = unit.description();
+    /// An instance of any model, not only of those the library knows by token, in its plain edition.
+    pub fn new(mut model: Box<dyn Model>, interface: Interface, logger: Logger) -> Result<Self, StateError> {
+        say_who_solves(&mut *model, interface);
+        let description = model.description();
         let mut instance = Self {
             start: SavedState::new(description),
             variables: description.variables,
             rows: ContinuousRows::of(description),
-            unit,
+            model,
             edition: Edition::Plain,
             interface,
             phase: Phase::Instantiated,
@@ -116,7 +116,7 @@ impl Instance {
     /// Computes all calculated values if something changed since the last time.
     pub(super) fn refresh(&mut self) -> Result<(), CallError> {
         if self.is_stale {
-            in_default_environment(|| self.unit.initialise(self.start_time))?;
+            in_default_environment(|| self.model.initialise(self.start_time))?;
             self.is_stale = false;
         }
         Ok(())
@@ -126,18 +126,18 @@ impl Instance {
     #[inline]
     pub(super) fn evaluate(&mut self) {
         if self.needs_evaluation {
-            if let Some(unit) = self.unit.continuous() {
-                in_default_environment(|| unit.evaluate());
+            if let Some(model) = self.model.continuous() {
+                in_default_environment(|| model.evaluate());
             }
             self.needs_evaluation = false;
         }
     }
 
     pub(super) fn exit_initialization_mode(&mut self) -> Result<(), CallError> {
-        in_default_environment(|| self.unit.start(self.start_time))?;
+        in_default_environment(|| self.model.start(self.start_time))?;
         self.is_stale = false;
         self.phase = self.interface.first_phase();
-        let (name, start_time) = (self.unit.description().name, self.start_time);
+        let (name, start_time) = (self.model.description().name, self.start_time);
         self.note(format_args!("{name} initialised at t = {start_time} s"));
         Ok(())
     }
@@ -146,10 +146,10 @@ impl Instance {
     #[inline]
     pub(super) fn do_step(&mut self, point: f64, step_size: f64) -> Result<(), CallError> {
         let duration = self.communication.duration(point, step_size)?;
-        self.unit.advance(duration, &mut self.logger)?;
+        self.model.advance(duration, &mut self.logger)?;
         self.needs_evaluation = false;
         self.communication.move_to(point + step_size);
-        self.unit.values_mut()[TIME] = self.communication.now();
+        self.model.values_mut()[TIME] = self.communication.now();
         Ok(())
     }
 
@@ -168,10 +168,10 @@ impl Instance {
 
     /// Clocks that the importer knows of, with their value references.
     pub(super) fn clocks(&self) -> impl Iterator<Item = (usize, &'static ClockVariable)> + use<> {
-        self.edition.clocks(self.unit.description())
+        self.edition.clocks(self.model.description())
     }
 
-    /// What a saved state has to tell besides the unit.
+    /// What a saved state has to tell besides the model.
     pub(super) fn life(&self) -> Life {
         let Self {
             phase, communication, earliest_time, start_time, is_stale, needs_evaluation, clocks, ..
@@ -179,7 +179,7 @@ impl Instance {
         Life { phase, communication, earliest_time, start_time, is_stale, needs_evaluation, clocks }
     }
 
-    /// Goes on from a saved state; the unit has been restored.
+    /// Goes on from a saved state; the model has been restored.
     pub(super) fn resume(&mut self, life: Life) {
         let Life { phase, communication, earliest_time, start_time, is_stale, needs_evaluation, clocks } =
             life;
@@ -192,7 +192,7 @@ impl Instance {
         self.clocks = clocks;
         self.step = None;
         // The state may be that of an instance with another interface.
-        let is_new = say_who_solves(&mut *self.unit, self.interface);
+        let is_new = say_who_solves(&mut *self.model, self.interface);
         self.is_stale |= is_new && matches!(phase, Phase::Instantiated | Phase::InitializationMode);
     }
 
@@ -201,11 +201,11 @@ impl Instance {
     }
 }
 
-/// Tells the unit who solves it; whether that is new to it.
-fn say_who_solves(unit: &mut dyn Unit, interface: Interface) -> bool {
+/// Tells the model who solves it; whether that is new to it.
+fn say_who_solves(model: &mut dyn Model, interface: Interface) -> bool {
     let solver = match interface {
         Interface::ModelExchange => Solver::Importer,
-        _ => Solver::Unit,
+        _ => Solver::Model,
     };
-    unit.continuous().is_some_and(|unit| unit.set_solver(solver))
+    model.continuous().is_some_and(|model| model.set_solver(solver))
 }

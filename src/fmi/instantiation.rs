@@ -5,20 +5,20 @@ use core::fmt;
 
 use super::message::Message;
 use super::{CallError, Callback, Form, Instance, Interface, Logger, StateError, Status};
-use crate::unit::memory::{OutOfMemory, try_boxed};
-use crate::unit::start_values::{StartValues, TokenError, read_token};
-use crate::unit::{Description, Edition, UnitType};
+use crate::model::memory::{OutOfMemory, try_boxed};
+use crate::model::start_values::{StartValues, TokenError, read_token};
+use crate::model::{Description, Edition, ModelType};
 use thiserror::Error;
 
 /// What an importer asks for.
 pub(super) struct Request<'a> {
     pub function: &'static str,
     pub name: Option<&'a CStr>,
-    /// Selects the unit and tells its start values.
+    /// Selects the model and tells its start values.
     pub token: Option<&'a CStr>,
     pub callback: Callback,
     pub logging_on: bool,
-    /// The name of what was asked for if no unit offers it.
+    /// The name of what was asked for if no model offers it.
     pub interface: Result<Interface, &'static str>,
 }
 
@@ -46,8 +46,8 @@ enum InstantiationError<'a> {
 impl Request<'_> {
     /// What is to be said of the instance when it is about to be made, or why there will be none.
     pub(super) fn announce(&self) -> Result<Message, Message> {
-        let (unit, ..) = self.read().map_err(|error| self.refusal(&error))?;
-        Ok(self.callback.event(format_args!("{} instantiated", unit.description.name)))
+        let (model, ..) = self.read().map_err(|error| self.refusal(&error))?;
+        Ok(self.callback.event(format_args!("{} instantiated", model.description.name)))
     }
 
     /// The instance with the start values in the token, or why there is none.
@@ -61,24 +61,24 @@ impl Request<'_> {
     }
 
     fn try_make(&self) -> Result<Box<Instance>, InstantiationError<'_>> {
-        let (unit, edition, start_values, interface) = self.read()?;
+        let (model, edition, start_values, interface) = self.read()?;
         let logger = Logger::new(self.callback, self.name.unwrap_or_default(), self.logging_on)?;
-        let mut made = (unit.try_create)()?;
+        let mut made = (model.try_create)()?;
         start_values.apply(&mut *made);
         let mut instance = Instance::new(made, interface, logger)?;
         instance.edition = edition;
         Ok(try_boxed("an instance", instance)?)
     }
 
-    /// The unit, its edition and start values and the interface type that are asked for.
-    fn read(&self) -> Result<(&'static UnitType, Edition, StartValues, Interface), InstantiationError<'_>> {
+    /// The model, its edition and start values and the interface type that are asked for.
+    fn read(&self) -> Result<(&'static ModelType, Edition, StartValues, Interface), InstantiationError<'_>> {
         let interface = self.interface.map_err(InstantiationError::UnknownInterface)?;
         let token = self.token.unwrap_or_default().to_str().unwrap_or_default();
-        let (unit, edition, start_values) = read_token(token).map_err(InstantiationError::Token)?;
-        if interface.is_offered_by(unit.description, edition) {
-            Ok((unit, edition, start_values, interface))
+        let (model, edition, start_values) = read_token(token).map_err(InstantiationError::Token)?;
+        if interface.is_offered_by(model.description, edition) {
+            Ok((model, edition, start_values, interface))
         } else {
-            Err(InstantiationError::OtherInterface(unit.description, edition, interface))
+            Err(InstantiationError::OtherInterface(model.description, edition, interface))
         }
     }
 
@@ -93,7 +93,7 @@ impl Request<'_> {
     }
 }
 
-/// The interface types of an edition of a unit, for an error message.
+/// The interface types of an edition of a model, for an error message.
 struct Offered(&'static Description, Edition);
 
 impl fmt::Display for Offered {
@@ -105,7 +105,7 @@ impl fmt::Display for Offered {
     }
 }
 
-/// Where another package of the unit offers what this one does not, for an error message; nothing if none does.
+/// Where another package of the model offers what this one does not, for an error message; nothing if none does.
 struct Elsewhere(&'static Description, Interface);
 
 impl fmt::Display for Elsewhere {

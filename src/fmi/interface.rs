@@ -1,19 +1,19 @@
 //! Interface types: how an importer uses an instance.
 
 use super::Phase;
-use crate::unit::{Description, Edition};
+use crate::model::{Description, Edition};
 
 /// What an instance was made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interface {
-    /// The unit solves itself, step by step; a sampled one ticks within its steps.
+    /// The model solves itself, step by step; a sampled one ticks within its steps.
     CoSimulation,
     /// As before, but steps end at ticks, which the importer runs in event mode. A step that may not return early runs
     /// the ticks inside it by itself, and only a tick at its end is an event.
     CoSimulationWithEvents { may_return_early: bool },
-    /// The importer integrates the unit.
+    /// The importer integrates the model.
     ModelExchange,
-    /// A scheduler runs the ticks of a sampled unit.
+    /// A scheduler runs the ticks of a sampled model.
     ScheduledExecution,
 }
 

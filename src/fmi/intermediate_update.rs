@@ -1,4 +1,4 @@
-//! Intermediate update of FMI 3.0: a sampled unit calls the importer back at each tick within a step.
+//! Intermediate update of FMI 3.0: a sampled model calls the importer back at each tick within a step.
 //!
 //! At the callback the tick is due and not yet run: the importer may set the continuous inputs as of that time, which
 //! the tick then reads, or end the step there. The first tick of a step that starts at it needs no callback, its inputs
@@ -10,8 +10,8 @@
 use super::fmi3::types::{fmi3InstanceEnvironment, fmi3IntermediateUpdateCallback};
 use super::ticking::{StepEnd, sampled};
 use super::{CallError, Instance, Interface, Phase};
-use crate::unit::TIME;
-use crate::unit::sample_clock::SampleClock;
+use crate::model::TIME;
+use crate::model::sample_clock::SampleClock;
 
 /// What the importer gave at instantiation.
 #[derive(Clone, Copy)]
@@ -56,7 +56,7 @@ pub(super) struct StepInProgress {
     rest: f64,
     /// Time of the callback.
     time: f64,
-    /// The unit's clock as it will be at the end; none once the end has been moved.
+    /// The model's clock as it will be at the end; none once the end has been moved.
     final_clock: Option<SampleClock>,
 }
 
@@ -74,7 +74,7 @@ impl Instance {
         // With events, ticks end steps unless that is forbidden, and it is the importer who runs them.
         let ends_at_ticks = self.interface == Interface::CoSimulationWithEvents { may_return_early: true };
         match self.intermediate_update {
-            Some(update) if !ends_at_ticks && self.unit.sampled().is_some() => {
+            Some(update) if !ends_at_ticks && self.model.sampled().is_some() => {
                 self.begin_step_with_callbacks(update, point, step_size)
             }
             _ => self.step_to_event(point, step_size).map(Progress::Done),
@@ -88,14 +88,14 @@ impl Instance {
         step_size: f64,
     ) -> Result<Progress, CallError> {
         let duration = self.communication.duration(point, step_size)?;
-        let unit = sampled(&mut *self.unit)?;
-        // Refuses what `Unit::advance` would refuse; the ticks are counted one by one below.
-        unit.require_acceptable_step(duration)?;
-        let mut final_clock = *unit.clock();
+        let model = sampled(&mut *self.model)?;
+        // Refuses what `Model::advance` would refuse; the ticks are counted one by one below.
+        model.require_acceptable_step(duration)?;
+        let mut final_clock = *model.clock();
         final_clock.advance(duration);
-        if unit.clock().until_tick_within(duration) == Some(0.0) {
-            let time = unit.clock_mut().take();
-            unit.tick(time, &mut self.logger);
+        if model.clock().until_tick_within(duration) == Some(0.0) {
+            let time = model.clock_mut().take();
+            model.tick(time, &mut self.logger);
         }
         let end = point + step_size;
         let step = StepInProgress { end, rest: duration, time: point, final_clock: Some(final_clock) };
@@ -116,36 +116,36 @@ impl Instance {
             step.end = time;
             step.final_clock = None;
         }
-        let unit = sampled(&mut *self.unit)?;
+        let model = sampled(&mut *self.model)?;
         // A tick at the end of the step belongs to the next one.
-        if unit.clock().until_tick_within(step.rest).is_some() {
-            let time = unit.clock_mut().take();
-            unit.tick(time, &mut self.logger);
+        if model.clock().until_tick_within(step.rest).is_some() {
+            let time = model.clock_mut().take();
+            model.tick(time, &mut self.logger);
         }
         self.go_on(update, step)
     }
 
     /// To the next tick within the step, or to its end.
     fn go_on(&mut self, update: IntermediateUpdate, mut step: StepInProgress) -> Result<Progress, CallError> {
-        let unit = sampled(&mut *self.unit)?;
-        let clock = unit.clock_mut();
+        let model = sampled(&mut *self.model)?;
+        let clock = model.clock_mut();
         if let Some(wait) = clock.until_tick_within(step.rest) {
             clock.pass(wait);
             step.rest -= wait;
             step.time = clock.next_time().max(step.time).min(step.end);
-            self.unit.values_mut()[TIME] = step.time;
+            self.model.values_mut()[TIME] = step.time;
             self.phase = Phase::IntermediateUpdateMode;
             self.step = Some(step);
             return Ok(Progress::Waits(update, step.time));
         }
         match &step.final_clock {
-            // To the last digit where `Unit::advance` would have left it.
+            // To the last digit where `Model::advance` would have left it.
             Some(final_clock) => *clock = *final_clock,
             None => clock.pass(step.rest),
         }
         let is_event = matches!(self.interface, Interface::CoSimulationWithEvents { .. }) && clock.is_due();
         self.communication.move_to(step.end);
-        self.unit.values_mut()[TIME] = step.end;
+        self.model.values_mut()[TIME] = step.end;
         Ok(Progress::Done(StepEnd { is_event, is_early: step.final_clock.is_none() }))
     }
 }
@@ -153,15 +153,15 @@ impl Instance {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::unit::UNITS;
+    use crate::model::MODELS;
 
     #[test]
     fn every_row_can_be_registered() {
-        for unit in UNITS {
-            let count = unit.description.variables.len();
+        for model in MODELS {
+            let count = model.description.variables.len();
             let all: Vec<u32> = (0..count as u32).collect();
             let registered = RegisteredVariables::new(&all, count).unwrap();
-            assert!(all.iter().all(|reference| registered.contains(*reference)), "{}", unit.description.name);
+            assert!(all.iter().all(|reference| registered.contains(*reference)), "{}", model.description.name);
             assert!(!registered.contains(count as u32) && !registered.contains(u32::MAX));
             let refused = CallError::UnknownReference { reference: count as u32, largest: count - 1 };
             assert_eq!(RegisteredVariables::new(&[count as u32], count).err(), Some(refused));

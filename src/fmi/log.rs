@@ -7,8 +7,8 @@ use super::fmi2::types::{fmi2CallbackLogger, fmi2ComponentEnvironment};
 use super::fmi3::types::{fmi3InstanceEnvironment, fmi3LogMessageCallback};
 use super::message::{Message, Outbox};
 use super::{CallError, Status};
-use crate::unit::memory::{OutOfMemory, try_vector};
-use crate::unit::{Journal, Topic};
+use crate::model::memory::{OutOfMemory, try_vector};
+use crate::model::{Journal, Topic};
 
 /// Declared log categories: name in the model description and description.
 pub const LOG_CATEGORIES: [(&CStr, &str); 4] = [

@@ -4,7 +4,7 @@ use core::ffi::c_char;
 use core::fmt::{self, Write};
 
 use super::Status;
-use crate::unit::memory::{OutOfMemory, try_vector};
+use crate::model::memory::{OutOfMemory, try_vector};
 
 /// Longest message in bytes, the final NUL included; the rest is cut off.
 const LONGEST: usize = 1024;

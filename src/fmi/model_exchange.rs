@@ -2,10 +2,10 @@
 
 use super::event_mode::EventEnd;
 use super::{CallError, Instance, Interface, Phase};
-use crate::unit::continuous::nominal;
-use crate::unit::value::{ValueError, is_finite};
-use crate::unit::variable::Variable;
-use crate::unit::{ContinuousUnit, TIME};
+use crate::model::continuous::nominal;
+use crate::model::value::{ValueError, is_finite};
+use crate::model::variable::Variable;
+use crate::model::{ContinuousModel, TIME};
 
 impl Instance {
     /// Refuses functions that belong to model exchange alone on instances that were made for something else.
@@ -16,17 +16,17 @@ impl Instance {
         }
     }
 
-    /// The unit of a model-exchange instance.
-    fn exchanged(&mut self) -> Result<&mut dyn ContinuousUnit, CallError> {
+    /// What an instance for model exchange integrates.
+    fn exchanged(&mut self) -> Result<&mut dyn ContinuousModel, CallError> {
         self.require_model_exchange()?;
-        self.unit.continuous().ok_or(CallError::NotOffered("the unit has no continuous states"))
+        self.model.continuous().ok_or(CallError::NotOffered("the model has no continuous states"))
     }
 
     /// Discrete transitions; one call settles them all.
     pub(super) fn update_states_of_integration(&mut self) -> Result<EventEnd, CallError> {
-        let unit = self.exchanged()?;
-        let have_states_changed = unit.update_discrete_states();
-        let next_event_time = unit.next_event_time();
+        let model = self.exchanged()?;
+        let have_states_changed = model.update_discrete_states();
+        let next_event_time = model.next_event_time();
         self.needs_evaluation = true;
         Ok(EventEnd { is_unfinished: false, have_states_changed, next_event_time })
     }
@@ -37,7 +37,7 @@ impl Instance {
         Ok(())
     }
 
-    /// The solver accepts where it is. No unit has step events.
+    /// The solver accepts where it is. No model has step events.
     pub(super) fn complete_integrator_step(&mut self) -> Result<(), CallError> {
         self.require_model_exchange()?;
         self.require_not_past_stop_time()?;
@@ -59,7 +59,7 @@ impl Instance {
             return Err(CallError::WrongTime { argument: "time", value: time, expected });
         }
         self.earliest_time.check(time)?;
-        self.unit.values_mut()[TIME] = time;
+        self.model.values_mut()[TIME] = time;
         self.communication.move_to(time);
         Ok(())
     }
@@ -75,7 +75,7 @@ impl Instance {
                 return Err(CallError::StateRejected(ValueError::NotFinite { name, value: *value, unit }));
             }
         }
-        let values = self.unit.values_mut();
+        let values = self.model.values_mut();
         for (row, value) in rows.states().iter().zip(states) {
             values[*row] = *value;
         }
@@ -103,7 +103,7 @@ impl Instance {
         let rows = self.rows;
         require_count("nx", nominals.len(), rows.states().len())?;
         for (target, row) in nominals.iter_mut().zip(rows.states()) {
-            *target = nominal(self.unit.description(), *row);
+            *target = nominal(self.model.description(), *row);
         }
         Ok(())
     }
@@ -119,7 +119,7 @@ impl Instance {
         require_count(argument, target.len(), rows.len())?;
         self.refresh_before_first_step()?;
         self.evaluate();
-        let source = self.unit.values();
+        let source = self.model.values();
         for row in rows {
             require_computed(&self.variables[*row], source[*row])?;
         }

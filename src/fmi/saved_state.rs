@@ -1,8 +1,8 @@
 //! The state of an instance, in memory and as bytes that outlive the process.
 //!
-//! Both forms hold the same payload, written by `postcard`: where the instance stands in its life, then the unit. What
+//! Both forms hold the same payload, written by `postcard`: where the instance stands in its life, then the model. What
 //! belongs to the importer, the logger and the instance's name, is not part of it. A state thus fits every instance
-//! of the same unit, whatever the version of the standard.
+//! of the same model, whatever the version of the standard.
 //!
 //! Serialised, with all numbers in little-endian order:
 //!
@@ -10,7 +10,7 @@
 //! 0   8   mark "maglevFS"
 //! 8   4   version of this format
 //! 12  4   length n of the payload
-//! 16  38  instantiation token of the unit, which tells units and releases apart
+//! 16  38  instantiation token of the model, which tells models and releases apart
 //! 54  4   CRC-32 (IEEE) of bytes 0 to 54 and of the payload
 //! 58  n   payload
 //! ```
@@ -18,15 +18,15 @@
 use super::earliest_time::EarliestTime;
 use super::ticking::ClockStates;
 use super::{CommunicationPoint, Instance, Interface, Phase};
-use crate::unit::memory::OutOfMemory;
-use crate::unit::persistence::PersistenceError;
-use crate::unit::{Description, units};
+use crate::model::memory::OutOfMemory;
+use crate::model::persistence::PersistenceError;
+use crate::model::{Description, models};
 use core::fmt;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 const MARK: [u8; 8] = *b"maglevFS";
-/// To be raised whenever a unit's fields or [`Life`] change.
+/// To be raised whenever a model's fields or [`Life`] change.
 const VERSION: u32 = 5;
 
 const TOKEN: core::ops::Range<usize> = 16..54;
@@ -53,7 +53,7 @@ pub enum StateError {
     #[error("{got} bytes: expected {expected} by what they say of themselves")]
     Payload { got: usize, expected: usize },
     #[error("a state of {got}: expected {expected}")]
-    OtherUnit { got: TokenName, expected: &'static str },
+    OtherModel { got: TokenName, expected: &'static str },
     #[error("checksum {got:08x}: expected {expected:08x}, the bytes are damaged")]
     Checksum { got: u32, expected: u32 },
     #[error("a state whose phase and times are not readable")]
@@ -67,20 +67,20 @@ pub enum StateError {
     #[error("a state before the first step in the phase \"{0}\"")]
     Stale(&'static str),
     #[error(transparent)]
-    Unit(#[from] PersistenceError),
+    Model(#[from] PersistenceError),
     #[error(transparent)]
     OutOfMemory(#[from] OutOfMemory),
 }
 
-/// A token as read from bytes, displayed as the name of its unit where it has one.
+/// A token as read from bytes, displayed as the name of its model where it has one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TokenName([u8; TOKEN.end - TOKEN.start]);
 
 impl fmt::Display for TokenName {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let known = units().find(|unit| unit.description.token().as_str().as_bytes() == self.0);
+        let known = models().find(|model| model.description.token().as_str().as_bytes() == self.0);
         match (known, core::str::from_utf8(&self.0)) {
-            (Some(unit), _) => formatter.write_str(unit.description.name),
+            (Some(model), _) => formatter.write_str(model.description.name),
             (None, Ok(token)) => write!(formatter, "another release or library, token {token}"),
             (None, Err(_)) => formatter.write_str("nothing known, its token is no text"),
         }
@@ -124,15 +124,15 @@ impl Life {
 pub struct SavedState {
     /// [`MARK`], gone once the state is freed.
     mark: [u8; 8],
-    unit: &'static Description,
+    model: &'static Description,
     length: usize,
     payload: [u8; CAPACITY],
 }
 
 impl SavedState {
     /// A state that is yet to be saved.
-    pub(super) fn new(unit: &'static Description) -> Self {
-        Self { mark: MARK, unit, length: 0, payload: [0; CAPACITY] }
+    pub(super) fn new(model: &'static Description) -> Self {
+        Self { mark: MARK, model, length: 0, payload: [0; CAPACITY] }
     }
 
     pub(super) fn is_alive(&self) -> bool {
@@ -165,14 +165,14 @@ impl SavedState {
         header[..8].copy_from_slice(&MARK);
         header[8..12].copy_from_slice(&VERSION.to_le_bytes());
         header[12..16].copy_from_slice(&(self.length as u32).to_le_bytes());
-        header[TOKEN].copy_from_slice(self.unit.token().as_str().as_bytes());
+        header[TOKEN].copy_from_slice(self.model.token().as_str().as_bytes());
         let checksum = checksum(header, payload);
         header[CHECKSUM].copy_from_slice(&checksum.to_le_bytes());
         Ok(())
     }
 
-    /// A state of `unit` from bytes. Only the frame is checked here, the contents by [`Instance::verify`].
-    pub(super) fn deserialise(bytes: &[u8], unit: &'static Description) -> Result<Self, StateError> {
+    /// A state of `model` from bytes. Only the frame is checked here, the contents by [`Instance::verify`].
+    pub(super) fn deserialise(bytes: &[u8], model: &'static Description) -> Result<Self, StateError> {
         let got = bytes.len();
         if !(HEADER..=LONGEST_SAVED_STATE).contains(&got) {
             return Err(StateError::Length { got });
@@ -187,8 +187,8 @@ impl SavedState {
             return Err(StateError::Version { got: version });
         }
         let token = array(header, TOKEN.start);
-        if token != unit.token().as_str().as_bytes() {
-            return Err(StateError::OtherUnit { got: TokenName(token), expected: unit.name });
+        if token != model.token().as_str().as_bytes() {
+            return Err(StateError::OtherModel { got: TokenName(token), expected: model.name });
         }
         let length = u32::from_le_bytes(array(header, 12)) as usize;
         if length != payload.len() {
@@ -199,7 +199,7 @@ impl SavedState {
         if found != expected {
             return Err(StateError::Checksum { got: found, expected });
         }
-        let mut state = Self::new(unit);
+        let mut state = Self::new(model);
         state.length = length;
         state.payload[..length].copy_from_slice(payload);
         Ok(state)
@@ -207,16 +207,16 @@ impl SavedState {
 }
 
 impl SavedState {
-    /// The life and the bytes of the unit, for an instance of `unit` that was made for `interface`.
-    fn read(&self, unit: &'static Description, interface: Interface) -> Result<(Life, &[u8]), StateError> {
-        if !core::ptr::eq(self.unit, unit) {
+    /// The life and the bytes of the model, for an instance of `model` that was made for `interface`.
+    fn read(&self, model: &'static Description, interface: Interface) -> Result<(Life, &[u8]), StateError> {
+        if !core::ptr::eq(self.model, model) {
             let mut token = [0; TOKEN.end - TOKEN.start];
-            token.copy_from_slice(self.unit.token().as_str().as_bytes());
-            return Err(StateError::OtherUnit { got: TokenName(token), expected: unit.name });
+            token.copy_from_slice(self.model.token().as_str().as_bytes());
+            return Err(StateError::OtherModel { got: TokenName(token), expected: model.name });
         }
-        let (life, unit) = postcard::take_from_bytes::<Life>(self.payload()).map_err(|_| StateError::Life)?;
+        let (life, model) = postcard::take_from_bytes::<Life>(self.payload()).map_err(|_| StateError::Life)?;
         life.check(|phase| interface.reaches(phase))?;
-        Ok((life, unit))
+        Ok((life, model))
     }
 }
 
@@ -235,32 +235,32 @@ fn array<const N: usize>(bytes: &[u8], start: usize) -> [u8; N] {
 
 impl Instance {
     pub(super) fn save(&self, state: &mut SavedState) -> Result<(), StateError> {
-        state.unit = self.unit.description();
+        state.model = self.model.description();
         // Nothing to restore, should the rest fail.
         state.length = 0;
         let life = postcard::to_slice(&self.life(), &mut state.payload).map_err(|_| StateError::Life)?.len();
-        state.length = life + self.unit.save(&mut state.payload[life..])?;
+        state.length = life + self.model.save(&mut state.payload[life..])?;
         Ok(())
     }
 
     pub(super) fn restore(&mut self, state: &SavedState) -> Result<(), StateError> {
-        let (life, unit) = state.read(self.unit.description(), self.interface)?;
-        self.unit.restore(unit, !life.is_stale)?;
+        let (life, model) = state.read(self.model.description(), self.interface)?;
+        self.model.restore(model, !life.is_stale)?;
         self.resume(life);
         Ok(())
     }
 
     /// As [`Instance::restore`], from the state in which the instance was made.
     pub(super) fn restart(&mut self) -> Result<(), StateError> {
-        let (life, unit) = self.start.read(self.unit.description(), self.interface)?;
-        self.unit.restore(unit, !life.is_stale)?;
+        let (life, model) = self.start.read(self.model.description(), self.interface)?;
+        self.model.restore(model, !life.is_stale)?;
         self.resume(life);
         Ok(())
     }
 
     /// Whether [`Instance::restore`] would work.
     pub(super) fn verify(&self, state: &SavedState) -> Result<(), StateError> {
-        let (life, unit) = state.read(self.unit.description(), self.interface)?;
-        Ok(self.unit.verify(unit, !life.is_stale)?)
+        let (life, model) = state.read(self.model.description(), self.interface)?;
+        Ok(self.model.verify(model, !life.is_stale)?)
     }
 }

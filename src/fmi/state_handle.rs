@@ -3,7 +3,7 @@
 use core::ffi::c_void;
 
 use super::{CallError, Instance, SavedState, StateError};
-use crate::unit::memory::try_boxed;
+use crate::model::memory::try_boxed;
 
 /// The state behind a handle.
 ///
@@ -26,7 +26,7 @@ pub(super) unsafe fn get_state(instance: &mut Instance, target: *mut *mut c_void
         // SAFETY: the caller's promise.
         return Ok(instance.save(unsafe { &mut *living(*target)? })?);
     }
-    let mut state = SavedState::new(instance.unit.description());
+    let mut state = SavedState::new(instance.model.description());
     instance.save(&mut state)?;
     *target = on_the_heap(state)?;
     Ok(())
@@ -43,7 +43,7 @@ pub(super) unsafe fn deserialise_state(
 ) -> Result<(), CallError> {
     // SAFETY: the caller's promise.
     let target = unsafe { target.as_mut() }.ok_or(CallError::NullPointer("FMUState"))?;
-    let state = SavedState::deserialise(bytes, instance.unit.description())?;
+    let state = SavedState::deserialise(bytes, instance.model.description())?;
     instance.verify(&state)?;
     if target.is_null() {
         *target = on_the_heap(state)?;

@@ -1,4 +1,4 @@
-//! Who makes a sampled unit tick: the unit within its steps, the importer at events, or a scheduler ([`Interface`]).
+//! Who makes a sampled model tick: the model within its steps, the importer at events, or a scheduler ([`Interface`]).
 //!
 //! All three run the same ticks with the same inputs. Without events a tick at t reads the inputs that were set before
 //! the step that starts at or before t. With events a step ends at the tick and the importer enters event mode. There
@@ -10,8 +10,8 @@
 
 use super::fraction::time_from;
 use super::{CallError, Instance, Interface, Phase};
-use crate::unit::sampled::{CLOCKS, SAMPLE_TIME, TICK, TICKED};
-use crate::unit::{SampledUnit, TIME, Unit};
+use crate::model::sampled::{CLOCKS, SAMPLE_TIME, TICK, TICKED};
+use crate::model::{SampledModel, TIME, Model};
 use serde::{Deserialize, Serialize};
 
 /// Clocks at one instant.
@@ -54,13 +54,13 @@ impl Instance {
             return Ok(StepEnd { is_event: false, is_early: false });
         };
         let duration = self.communication.duration(point, step_size)?;
-        let unit = sampled(&mut *self.unit)?;
+        let model = sampled(&mut *self.model)?;
         let mut is_early = false;
-        match unit.clock().until_tick_within(duration) {
+        match model.clock().until_tick_within(duration) {
             Some(wait) if may_return_early => {
                 // However long the step that was asked for, the part up to the tick computes nothing.
-                unit.require_bearable_step(wait)?;
-                let clock = unit.clock_mut();
+                model.require_bearable_step(wait)?;
+                let clock = model.clock_mut();
                 clock.pass(wait);
                 // The importer's time may be off by rounding; a step never goes back nor beyond its end.
                 let reached = clock.next_time().max(point).min(point + step_size);
@@ -68,12 +68,12 @@ impl Instance {
                 is_early = self.communication.now() < point + step_size;
             }
             _ => {
-                self.unit.advance(duration, &mut self.logger)?;
+                self.model.advance(duration, &mut self.logger)?;
                 self.communication.move_to(point + step_size);
             }
         }
-        self.unit.values_mut()[TIME] = self.communication.now();
-        Ok(StepEnd { is_event: sampled(&mut *self.unit)?.clock().is_due(), is_early })
+        self.model.values_mut()[TIME] = self.communication.now();
+        Ok(StepEnd { is_event: sampled(&mut *self.model)?.clock().is_due(), is_early })
     }
 
     /// Runs the tick that a scheduler calls for at `time` \[s\].
@@ -85,12 +85,12 @@ impl Instance {
         if !time.is_finite() || time < now || (time == now && self.clocks.was_activated) {
             return Err(CallError::ActivationTime { got: time, last: now });
         }
-        let unit = sampled(&mut *self.unit)?;
-        self.communication.require_before_stop_time("activationTime", time, unit.clock().period())?;
-        let tick_time = unit.clock_mut().take_at(time);
-        unit.tick(tick_time, &mut self.logger);
+        let model = sampled(&mut *self.model)?;
+        self.communication.require_before_stop_time("activationTime", time, model.clock().period())?;
+        let tick_time = model.clock_mut().take_at(time);
+        model.tick(tick_time, &mut self.logger);
         self.communication.move_to(time);
-        self.unit.values_mut()[TIME] = time;
+        self.model.values_mut()[TIME] = time;
         self.clocks.was_activated = true;
         self.clocks.is_activation_untold = true;
         Ok(())
@@ -107,7 +107,7 @@ impl Instance {
         self.phase = Phase::ClockActivationMode;
     }
 
-    /// Place of the clock with this value reference in the unit's clocks.
+    /// Place of the clock with this value reference in the model's clocks.
     pub(super) fn find_clock(&self, reference: u32) -> Result<usize, CallError> {
         if let Some(variable) = self.variables.get(reference as usize) {
             return Err(CallError::NoClock { name: variable.name, reference });
@@ -117,7 +117,7 @@ impl Instance {
     }
 
     fn no_input_clock(&self) -> CallError {
-        let why = "a clock that the unit itself activates";
+        let why = "a clock that the model itself activates";
         CallError::NotSettable { name: CLOCKS[TICKED].name, why, phase: self.phase.name() }
     }
 
@@ -142,7 +142,7 @@ impl Instance {
                 return Err(self.no_input_clock());
             }
             let now = self.communication.now();
-            let clock = sampled(&mut *self.unit)?.clock();
+            let clock = sampled(&mut *self.model)?.clock();
             match (*value != 0, clock.is_due()) {
                 (true, true) => is_tick_active = true,
                 (true, false) => {
@@ -164,7 +164,7 @@ impl Instance {
         }
         self.refresh_before_first_step()?;
         let start_time = self.start_time;
-        let clock = sampled(&mut *self.unit)?.clock();
+        let clock = sampled(&mut *self.model)?.clock();
         let interval = clock.period();
         let shift_fraction = time_from(start_time, clock.next_number(), interval);
         let shift = match shift_fraction {
@@ -180,8 +180,8 @@ impl Instance {
         references: &[u32],
         intervals: impl Iterator<Item = f64> + Clone,
     ) -> Result<(), CallError> {
-        // A unit without clocks has no reference that passes.
-        let sample_time = self.unit.description().find(SAMPLE_TIME);
+        // A model without clocks has no reference that passes.
+        let sample_time = self.model.description().find(SAMPLE_TIME);
         for (reference, interval) in references.iter().zip(intervals.clone()) {
             if self.find_clock(*reference)? != TICK {
                 return Err(self.no_input_clock());
@@ -189,13 +189,13 @@ impl Instance {
             sample_time.map_or(Ok(()), |(_, variable)| variable.check(interval))?;
         }
         if let (Some((row, _)), Some(interval)) = (sample_time, intervals.last()) {
-            self.unit.values_mut()[row] = interval;
+            self.model.values_mut()[row] = interval;
             self.is_stale = true;
         }
         Ok(())
     }
 }
 
-pub(super) fn sampled(unit: &mut dyn Unit) -> Result<&mut dyn SampledUnit, CallError> {
-    unit.sampled().ok_or(CallError::NotOffered("the unit has no clocks"))
+pub(super) fn sampled(model: &mut dyn Model) -> Result<&mut dyn SampledModel, CallError> {
+    model.sampled().ok_or(CallError::NotOffered("the model has no clocks"))
 }

@@ -254,7 +254,7 @@ mod tests {
         use zip::write::{SimpleFileOptions, ZipWriter};
 
         let directory = tempfile::tempdir().unwrap();
-        let (path, parent) = (directory.path().join("unit.fmu"), directory.path().join("temporary"));
+        let (path, parent) = (directory.path().join("model.fmu"), directory.path().join("temporary"));
         fs::create_dir(&parent).unwrap();
         let mut zip = ZipWriter::new(File::create(&path).unwrap());
         for name in ["resources/small", "resources/large"] {

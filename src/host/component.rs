@@ -15,7 +15,7 @@ pub(super) enum Refusal {
     NotExact { value: f64, target: Storage },
     /// The variable cannot be accessed as a number, or as a text.
     WrongStorage,
-    /// The unit wants the simulation to end.
+    /// The model wants the simulation to end.
     Termination,
 }
 
@@ -34,7 +34,7 @@ pub(super) trait Component: Send {
     /// Both times in seconds.
     fn enter_initialisation(&mut self, start_time: f64, stop_time: Option<f64>) -> Answer;
     fn exit_initialisation(&mut self) -> Answer;
-    /// Time and step size in seconds. Unless it `may_go_back`, the unit need not keep what lies before `time`.
+    /// Time and step size in seconds. Unless it `may_go_back`, the model need not keep what lies before `time`.
     fn step(&mut self, time: f64, step_size: f64, may_go_back: bool) -> Answer;
     fn terminate(&mut self) -> Answer;
     fn reset(&mut self) -> Answer;

@@ -1,4 +1,4 @@
-//! What can go wrong between a file on disk and a stepped unit.
+//! What can go wrong between a file on disk and a stepped model.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -86,7 +86,7 @@ pub enum HostError {
     /// The instance returned `Fatal` before: the standard forbids any further call.
     #[error("instance `{instance}` reported a fatal error before and may not be called again")]
     Lost { instance: String },
-    /// The unit asked its importer to end the simulation.
+    /// The model asked its importer to end the simulation.
     #[error("instance `{instance}` asked to terminate the simulation in the step from {time} s{}", Said(log))]
     TerminationRequested { instance: String, time: f64, log: Option<String> },
     /// There is no variable of that name.
@@ -129,21 +129,21 @@ pub enum HostError {
     #[error("the saved state was taken from another instance than `{instance}`")]
     ForeignState { instance: String },
     /// Only what a wire carries can be offset on the way.
-    #[error("no wire leads to `{variable}` of `{unit}`", variable = printable(variable))]
-    NoWire { unit: String, variable: String },
+    #[error("no wire leads to `{variable}` of `{model}`", variable = printable(variable))]
+    NoWire { model: String, variable: String },
     /// A master knows a `controller` and a `plant`, nothing else.
     #[error(
-        "cannot record `{variable}` of `{unit}`: the units of the loop are `controller` and `plant`",
+        "cannot record `{variable}` of `{model}`: the models of the loop are `controller` and `plant`",
         variable = printable(variable)
     )]
-    UnknownUnit { unit: String, variable: String },
+    UnknownModel { model: String, variable: String },
     /// A run can append only to a trace with the columns that the loop records.
     #[error("the trace has the columns [{trace}], the loop records [{recorded}]")]
     ForeignTrace { trace: String, recorded: String },
     /// A communication step has to be finite and positive.
     #[error("communication step size {step_size} s is not a positive number")]
     StepSize { step_size: f64 },
-    /// The loop was run before [`super::TwoUnitLoop::initialise`].
+    /// The loop was run before [`super::ControlLoop::initialise`].
     #[error("the loop of `{controller}` and `{plant}` was run before it was initialised")]
     LoopNotInitialised { controller: String, plant: String },
 }

@@ -1,4 +1,4 @@
-//! One running unit, the same for both versions of the standard.
+//! One running model, the same for both versions of the standard.
 
 use std::cell::Cell;
 use std::fmt;
@@ -44,7 +44,7 @@ pub struct Instance {
     phase: Cell<Phase>,
     /// Tells instances apart, so that a saved state cannot get into the wrong one.
     pub(super) identity: u64,
-    /// A state was saved, so the unit has to expect a return to it.
+    /// A state was saved, so the model has to expect a return to it.
     pub(super) may_go_back: bool,
     // Last, hence dropped last.
     loaded: Arc<Loaded>,
@@ -79,7 +79,7 @@ impl Instance {
         &self.loaded.description
     }
 
-    /// What the unit logged so far, oldest first; only the last 10 000 messages are kept.
+    /// What the model logged so far, oldest first; only the last 10 000 messages are kept.
     pub fn log(&self) -> Vec<LogMessage> {
         self.journal.messages()
     }
@@ -166,7 +166,7 @@ impl Instance {
         self.explain(answer, Subject::none)
     }
 
-    /// Enters and exits initialisation: afterwards the unit can step from `start_time` (both times in seconds).
+    /// Enters and exits initialisation: afterwards the model can step from `start_time` (both times in seconds).
     ///
     /// # Errors
     /// [`HostError::Call`].
@@ -200,7 +200,7 @@ impl Instance {
     /// Steps from `time` to `time + step_size`, both in seconds.
     ///
     /// # Errors
-    /// [`HostError::Call`], and [`HostError::TerminationRequested`] if the unit wants the simulation to end.
+    /// [`HostError::Call`], and [`HostError::TerminationRequested`] if the model wants the simulation to end.
     #[inline]
     pub fn step(&mut self, time: f64, step_size: f64) -> Result<()> {
         self.usable()?;
@@ -225,7 +225,7 @@ impl Instance {
         self.explain(answer, Subject::none)
     }
 
-    /// Back to where instantiation left the unit.
+    /// Back to where instantiation left the model.
     ///
     /// # Errors
     /// [`HostError::Call`].

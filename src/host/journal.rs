@@ -7,7 +7,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::error::ReportedStatus;
 
-/// A unit that logs in every step must not fill the memory: the oldest messages go first.
+/// A model that logs in every step must not fill the memory: the oldest messages go first.
 const CAPACITY: usize = 10_000;
 
 /// One message of an FMU.
@@ -20,7 +20,7 @@ pub struct LogMessage {
 
 /// Messages of one instance. Its address is the environment pointer that the FMU hands back to the logger.
 ///
-/// The lock is there because careless units log from threads of their own.
+/// The lock is there because careless models log from threads of their own.
 #[derive(Debug, Default)]
 pub(super) struct Journal {
     messages: Mutex<VecDeque<LogMessage>>,

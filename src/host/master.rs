@@ -18,7 +18,7 @@ use crate::exchange_order::ExchangeOrder;
 /// In both orders the values are exchanged once at the end of the initialisation. The values after the last step
 /// are read from the instances.
 #[derive(Debug)]
-pub struct TwoUnitLoop {
+pub struct ControlLoop {
     controller: Instance,
     plant: Instance,
     order: ExchangeOrder,
@@ -45,7 +45,7 @@ impl Clock {
     }
 }
 
-impl TwoUnitLoop {
+impl ControlLoop {
     /// Connects two instances, each connection being `(output name, input name)`.
     ///
     /// # Errors
@@ -74,21 +74,21 @@ impl TwoUnitLoop {
     /// Adds variables to the record, as `("plant", "position")` or `("controller", "voltage")`.
     ///
     /// # Errors
-    /// [`HostError::UnknownUnit`] for other first names, [`HostError::UnknownVariable`] or [`HostError::Array`].
+    /// [`HostError::UnknownModel`] for other first names, [`HostError::UnknownVariable`] or [`HostError::Array`].
     pub fn record(&mut self, variables: &[(&str, &str)]) -> Result<()> {
-        for &(unit, variable) in variables {
-            let (instance, probe) = match unit {
+        for &(model, variable) in variables {
+            let (instance, probe) = match model {
                 "controller" => (&self.controller, &mut self.controller_probe),
                 "plant" => (&self.plant, &mut self.plant_probe),
                 _ => {
-                    return Err(HostError::UnknownUnit {
-                        unit: unit.to_owned(),
+                    return Err(HostError::UnknownModel {
+                        model: model.to_owned(),
                         variable: variable.to_owned(),
                     });
                 }
             };
             probe.add(instance, variable, self.names.len())?;
-            self.names.push(format!("{unit}.{variable}"));
+            self.names.push(format!("{model}.{variable}"));
             self.units.push(instance.description().variable(variable)?.unit.as_deref().map(str::to_owned));
         }
         Ok(())
@@ -103,14 +103,14 @@ impl TwoUnitLoop {
         if self.to_plant.add_offset(target, offset) {
             Ok(())
         } else {
-            Err(HostError::NoWire { unit: self.plant.name().to_owned(), variable: input.to_owned() })
+            Err(HostError::NoWire { model: self.plant.name().to_owned(), variable: input.to_owned() })
         }
     }
 
-    /// Initialises both units at `start_time`, exchanges all values once, and fixes the step size (all in seconds).
+    /// Initialises both models at `start_time`, exchanges all values once, and fixes the step size (all in seconds).
     ///
     /// # Errors
-    /// [`HostError::StepSize`], and [`HostError::Call`] of either unit.
+    /// [`HostError::StepSize`], and [`HostError::Call`] of either model.
     pub fn initialise(&mut self, start_time: f64, stop_time: Option<f64>, step_size: f64) -> Result<()> {
         if !(step_size.is_finite() && step_size > 0.0) {
             return Err(HostError::StepSize { step_size });
@@ -130,11 +130,11 @@ impl TwoUnitLoop {
         self.run_with(steps, |_, _, _| Ok(()))
     }
 
-    /// As [`TwoUnitLoop::run`], with an `intervention(time, controller, plant)` at the beginning of every
+    /// As [`ControlLoop::run`], with an `intervention(time, controller, plant)` at the beginning of every
     /// communication point: the place to change a reference or a load.
     ///
     /// # Errors
-    /// Those of [`TwoUnitLoop::run`] and of the intervention.
+    /// Those of [`ControlLoop::run`] and of the intervention.
     pub fn run_with(
         &mut self,
         steps: usize,
@@ -145,11 +145,11 @@ impl TwoUnitLoop {
         Ok(trace)
     }
 
-    /// As [`TwoUnitLoop::run_with`], appending to a trace made by [`TwoUnitLoop::empty_trace`] or an earlier run.
+    /// As [`ControlLoop::run_with`], appending to a trace made by [`ControlLoop::empty_trace`] or an earlier run.
     /// After an error the trace holds the complete rows up to it.
     ///
     /// # Errors
-    /// Those of [`TwoUnitLoop::run`] and of the intervention, and [`HostError::ForeignTrace`] if the trace has other
+    /// Those of [`ControlLoop::run`] and of the intervention, and [`HostError::ForeignTrace`] if the trace has other
     /// columns than this loop records.
     pub fn run_into(
         &mut self,
@@ -232,7 +232,7 @@ impl TwoUnitLoop {
         (self.controller, self.plant)
     }
 
-    /// All values, read before any is written: what one unit gets does not depend on what the other got.
+    /// All values, read before any is written: what one model gets does not depend on what the other got.
     #[inline]
     fn exchange(&mut self) -> Result<()> {
         self.to_controller.read(&self.plant)?;

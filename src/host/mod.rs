@@ -15,7 +15,7 @@
 //! # Ok::<(), maglev_fmu::host::HostError>(())
 //! ```
 //!
-//! From the outside in: [`Fmu`] and [`Instance`] are what a user holds, [`TwoUnitLoop`] is the master,
+//! From the outside in: [`Fmu`] and [`Instance`] are what a user holds, [`ControlLoop`] is the master,
 //! [`ModelDescription`] is the XML in one form for both versions; `fmi2` and `fmi3` hold the two C function tables.
 //! The module knows the C ABI and the XML only, so it drives anybody's FMU.
 
@@ -50,7 +50,7 @@ pub use fmu::Fmu;
 pub use instance::{Instance, Logging};
 pub use journal::LogMessage;
 pub use limits::Limits;
-pub use master::TwoUnitLoop;
+pub use master::ControlLoop;
 pub use saved_state::SavedState;
 pub use trace::Trace;
 pub use value::{Handle, Value};

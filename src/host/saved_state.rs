@@ -66,7 +66,7 @@ impl Instance {
         self.explain(answer, Subject::none)
     }
 
-    /// A state from bytes that an instance of the same unit has serialised.
+    /// A state from bytes that an instance of the same model has serialised.
     ///
     /// # Errors
     /// As [`Instance::save_state`].

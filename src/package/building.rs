@@ -7,10 +7,10 @@ use super::{
     Form, GenerationTime, Library, PackageError, SystemForm, WrittenFile, archive, contents, system_structure,
 };
 use crate::file;
-use crate::unit::system::SYSTEMS;
-use crate::unit::{Description, StartValues, UNITS};
+use crate::model::system::SYSTEMS;
+use crate::model::{Description, StartValues, MODELS};
 
-/// Writes `directory/<form>/<Unit>.fmu` for all units in all their forms ([`Form::directory`]), each with all
+/// Writes `directory/<form>/<Model>.fmu` for all models in all their forms ([`Form::directory`]), each with all
 /// `libraries`, and for all systems a package of each [`SystemForm`]: `directory/<system>.ssp`,
 /// `directory/driven/<system>.ssp` and `directory/ssp2/<system>.ssp`.
 ///
@@ -23,7 +23,7 @@ pub fn build(
     build_with(directory, &[], libraries, time)
 }
 
-/// As [`build`], with other start values for some units: their model descriptions say so, and so do their tokens, by
+/// As [`build`], with other start values for some models: their model descriptions say so, and so do their tokens, by
 /// which the library knows.
 pub fn build_with(
     directory: &Path,
@@ -36,12 +36,12 @@ pub fn build_with(
         let directory = directory.join(form.directory());
         fs::create_dir_all(&directory)
             .map_err(|source| PackageError::Write { path: directory.clone(), source })?;
-        for unit in UNITS.iter().filter(|unit| form.edition.suits(unit.description)) {
-            let path = directory.join(unit.description.name).with_extension("fmu");
+        for model in MODELS.iter().filter(|model| form.edition.suits(model.description)) {
+            let path = directory.join(model.description.name).with_extension("fmu");
             let own =
-                start_values.iter().find(|(description, _)| std::ptr::eq(*description, unit.description));
+                start_values.iter().find(|(description, _)| std::ptr::eq(*description, model.description));
             let own = own.map_or(StartValues::TABLE, |(_, values)| values);
-            let entries = contents(unit.description, own, form, time, libraries)?;
+            let entries = contents(model.description, own, form, time, libraries)?;
             let bytes = archive(&entries, time)
                 .map_err(|source| PackageError::Archive { path: path.clone(), source })?;
             written.push(write(path, &bytes)?);

@@ -1,8 +1,8 @@
-//! What the units declare to be able to do: the capability flags of both standards.
+//! What the models declare to be able to do: the capability flags of both standards.
 
-use crate::unit::{Description, Edition};
+use crate::model::{Description, Edition};
 
-/// Capability flags of a unit, named as in FMI 3.0 where the standards differ in spelling.
+/// Capability flags of a model, named as in FMI 3.0 where the standards differ in spelling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Capabilities {
     /// Communication steps may differ in size.
@@ -14,12 +14,12 @@ pub struct Capabilities {
     /// FMI 2.0: `fmi2DoStep` may return before the step is over and go on in the background.
     pub can_run_asynchronously: bool,
     pub can_be_instantiated_only_once_per_process: bool,
-    /// FMI 2.0: the unit does not use the importer's functions for memory.
+    /// FMI 2.0: the model does not use the importer's functions for memory.
     pub can_not_use_memory_management_functions: bool,
     pub can_get_and_set_fmu_state: bool,
     pub can_serialize_fmu_state: bool,
     pub provides_directional_derivatives: bool,
-    /// The unit is only a link to a program that has to be installed.
+    /// The model is only a link to a program that has to be installed.
     pub needs_execution_tool: bool,
     /// Model exchange: the importer has to tell when a step of its integrator is accepted.
     pub needs_completed_integrator_step: bool,
@@ -37,12 +37,12 @@ pub struct Capabilities {
     pub has_event_mode: bool,
     /// FMI 3.0: `fmi3EvaluateDiscreteStates` works.
     pub provides_evaluate_discrete_states: bool,
-    /// FMI 3.0: the importer may make the unit tick by activating its model partition.
+    /// FMI 3.0: the importer may make the model tick by activating its model partition.
     pub offers_scheduled_execution: bool,
 }
 
 impl Capabilities {
-    /// Capabilities of an edition of a unit.
+    /// Capabilities of an edition of a model.
     pub fn of(description: &Description, edition: Edition) -> Self {
         match edition {
             _ if !description.is_sampled() => PLANT,
@@ -52,8 +52,8 @@ impl Capabilities {
     }
 }
 
-/// What all units have in common.
-const EVERY_UNIT: Capabilities = Capabilities {
+/// What all models have in common.
+const EVERY_MODEL: Capabilities = Capabilities {
     can_handle_variable_communication_step_size: true,
     can_interpolate_inputs: false,
     max_output_derivative_order: 0,
@@ -81,7 +81,7 @@ const PLANT: Capabilities = Capabilities {
     max_output_derivative_order: 1,
     provides_directional_derivatives: true,
     provides_adjoint_derivatives: true,
-    ..EVERY_UNIT
+    ..EVERY_MODEL
 };
 
 /// Controllers act at their ticks: an importer may end a step at one when it is called back before. In between all
@@ -91,7 +91,7 @@ const CONTROLLER: Capabilities = Capabilities {
     provides_intermediate_update: true,
     might_return_early_from_do_step: true,
     can_return_early_after_intermediate_update: true,
-    ..EVERY_UNIT
+    ..EVERY_MODEL
 };
 
 /// An importer that sees the clocks may also handle ticks as events or schedule them.

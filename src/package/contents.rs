@@ -11,7 +11,7 @@ use super::reference_run::ReferenceRun;
 use super::related_files::related_files;
 use super::run_figure::run_figure;
 use super::{FmiVersion, Form, GenerationTime, Library, PackageError, licenses};
-use crate::unit::{Description, StartValues};
+use crate::model::{Description, StartValues};
 
 /// A file of a package.
 #[derive(Clone, Debug)]
@@ -33,7 +33,7 @@ impl<'a> Entry<'a> {
 /// File name of the figure of the reference run, beside the documentation's first page.
 pub const RUN_FIGURE: &str = "reference-run.svg";
 
-/// All files of the package of one unit in one form, sorted by path.
+/// All files of the package of one model in one form, sorted by path.
 pub fn contents<'a>(
     description: &'static Description,
     start_values: &StartValues,
@@ -64,7 +64,7 @@ pub fn contents<'a>(
         entries.push(Entry::document(path, owned(loop_diagram(plug.system, Some(description)))));
     }
     let run = ReferenceRun::of(description, start_values)
-        .map_err(|source| PackageError::ReferenceRun { unit: name, source })?;
+        .map_err(|source| PackageError::ReferenceRun { model: name, source })?;
     entries.push(Entry::document(format!("documentation/{RUN_FIGURE}"), owned(run_figure(&run))));
     entries.extend(related_files(&run).map(|(path, text)| Entry::document(path, owned(text))));
     entries.extend(libraries.iter().map(|library| {

@@ -1,4 +1,4 @@
-//! `documentation/index.html`: what the unit models, its variables, where it comes from.
+//! `documentation/index.html`: what is modelled, the variables, where it comes from.
 
 use std::borrow::Cow;
 
@@ -10,7 +10,7 @@ use super::model_description::enumerations;
 use super::plug::Plug;
 use super::related_files::{DIRECTORY, INPUT, OUTPUT};
 use super::{Form, GenerationTime, licenses, variable_text};
-use crate::unit::{Description, Edition, StartValues};
+use crate::model::{Description, Edition, StartValues};
 
 pub(super) const STYLE: &str = "\
 body { font-family: sans-serif; line-height: 1.45; max-width: 70em; margin: 2em auto; padding: 0 1em; color: #1d2733; }
@@ -78,7 +78,7 @@ the first row before or after the end of the initialization.</p>
     )
 }
 
-/// The loops that the unit is part of, with their wires.
+/// The loops that the model is part of, with their wires.
 fn loops(description: &Description) -> String {
     let mut text = String::new();
     for plug in Plug::all_of(description) {

@@ -7,13 +7,13 @@ use std::path::{Path, PathBuf};
 use super::building::write;
 use super::model_page::{model_index, model_page};
 use super::{Form, PackageError, THIRD_PARTY_PATH, WrittenFile, model_description, third_party};
-use crate::unit::{StartValues, UNITS};
+use crate::model::{StartValues, MODELS};
 
 /// Path below the repository's root and text of each file that is generated from the variable tables.
 pub fn generated_files() -> Vec<(PathBuf, String)> {
     let mut files = Vec::new();
-    for unit in UNITS {
-        let description = unit.description;
+    for model in MODELS {
+        let description = model.description;
         for form in Form::all_of(description) {
             let folder = Path::new("modelDescription").join(form.directory());
             let text = model_description(description, StartValues::TABLE, form, None);
@@ -21,9 +21,9 @@ pub fn generated_files() -> Vec<(PathBuf, String)> {
         }
     }
     let folder = Path::new("docs").join("models");
-    for unit in UNITS {
-        let path = folder.join(unit.description.name).with_extension("md");
-        files.push((path, model_page(unit.description)));
+    for model in MODELS {
+        let path = folder.join(model.description.name).with_extension("md");
+        files.push((path, model_page(model.description)));
     }
     files.push((folder.join("README.md"), model_index()));
     files

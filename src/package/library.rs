@@ -10,7 +10,7 @@ use object::{BinaryFormat, Object};
 use super::{FmiVersion, PackageError, Platform};
 use crate::file;
 use crate::fmi::function_names;
-use crate::unit::{Edition, Token, UNITS, editions_of};
+use crate::model::{Edition, Token, MODELS, editions_of};
 
 /// Name of the library target, which differs from the package's in the dash.
 const LIBRARY_NAME: &str = "maglev_fmu";
@@ -27,8 +27,8 @@ pub struct Library {
 }
 
 impl Library {
-    /// Reads the library at `path`, finds out what platform it is for, and makes sure that it serves these units: it
-    /// exports every function of both standards, knows every unit's name, and its instantiation tokens are those that
+    /// Reads the library at `path`, finds out what platform it is for, and makes sure that it serves these models: it
+    /// exports every function of both standards, knows every model's name, and its instantiation tokens are those that
     /// the model descriptions will have.
     pub fn read(path: &Path) -> Result<Self, PackageError> {
         let bytes = file::read_at_most(path, LARGEST)
@@ -46,15 +46,15 @@ impl Library {
             });
         }
         let is_known = |name: &str| bytes.windows(name.len()).any(|part| part == name.as_bytes());
-        if let Some(unit) = UNITS.iter().map(|unit| unit.description.name).find(|name| !is_known(name)) {
-            return Err(PackageError::OtherUnits { path: path.to_owned(), unit });
+        if let Some(model) = MODELS.iter().map(|model| model.description.name).find(|name| !is_known(name)) {
+            return Err(PackageError::OtherModels { path: path.to_owned(), model });
         }
         let tokens = texts_like_tokens(&bytes);
         let is_missing =
             |edition: &Edition, description| !tokens.contains(edition.token(description).as_str().as_bytes());
-        let mut editions = editions_of(UNITS.iter().copied());
-        if let Some((unit, _)) = editions.find(|(unit, edition)| is_missing(edition, unit.description)) {
-            return Err(PackageError::OtherRelease { path: path.to_owned(), unit: unit.description.name });
+        let mut editions = editions_of(MODELS.iter().copied());
+        if let Some((model, _)) = editions.find(|(model, edition)| is_missing(edition, model.description)) {
+            return Err(PackageError::OtherRelease { path: path.to_owned(), model: model.description.name });
         }
         Ok(Self { path: path.to_owned(), platform, bytes })
     }

@@ -2,9 +2,9 @@
 
 use quick_xml::escape::escape;
 
-use crate::unit::Description;
-use crate::unit::system::System;
-use crate::unit::variable::{Causality, Kind, Variable};
+use crate::model::Description;
+use crate::model::system::System;
+use crate::model::variable::{Causality, Kind, Variable};
 
 /// Lengths in the picture \[pixel\].
 const BOX_WIDTH: i32 = 300;
@@ -57,7 +57,7 @@ pub fn diagram_name(system: &str) -> String {
     format!("{system}.svg")
 }
 
-/// The diagram; the box of the unit `shown`, if any, is filled.
+/// The diagram; the box of the model `shown`, if any, is filled.
 pub fn loop_diagram(system: &System, shown: Option<&Description>) -> String {
     let layout = Layout::new(system);
     let Layout { width, height, .. } = layout;
@@ -67,9 +67,9 @@ pub fn loop_diagram(system: &System, shown: Option<&Description>) -> String {
          refX=\"8\" refY=\"4\" markerWidth=\"8\" markerHeight=\"8\" orient=\"auto\"><path d=\"M0 0l8 4l-8 4z\" \
          fill=\"#3c5063\"/></marker></defs>\n<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n"
     );
-    for (unit, x) in [(system.controller, layout.controller_x), (system.plant, layout.plant_x)] {
-        let is_shown = shown.is_some_and(|shown| std::ptr::eq(shown, unit.description));
-        text += &block(&layout, unit.description.name, x, is_shown);
+    for (model, x) in [(system.controller, layout.controller_x), (system.plant, layout.plant_x)] {
+        let is_shown = shown.is_some_and(|shown| std::ptr::eq(shown, model.description));
+        text += &block(&layout, model.description.name, x, is_shown);
     }
     let right = layout.controller_x + BOX_WIDTH;
     for (index, (output, input)) in system.actuation.iter().enumerate() {
@@ -147,7 +147,7 @@ fn label(x: i32, y: i32, anchor: &str, name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::unit::system::systems;
+    use crate::model::system::systems;
 
     #[test]
     fn diagrams_are_drawings_with_all_wires() {

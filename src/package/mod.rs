@@ -1,8 +1,8 @@
-//! From a unit's variable table to a functional mock-up unit: model description, documentation, icon, archive; from the
+//! From a model's variable table to a functional mock-up unit: model description, documentation, icon, archive; from the
 //! table of systems to system structure packages; and from both to the pages in `docs/models`.
 //!
 //! Everything here is written from the tables that the shared library is built from, never by loading the library,
-//! so units for another platform can be packaged as well.
+//! so models for another platform can be packaged as well.
 
 mod archive;
 mod building;

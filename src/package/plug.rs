@@ -1,21 +1,21 @@
-//! The plug of a unit: what it exchanges with the other unit of its loop.
+//! The plug of a model: what it exchanges with the other model of its loop.
 //!
 //! Both plugs of a loop carry the same member names, those of the plant's variables, and the same kind, so that an
 //! importer can wire a loop by connecting one plug with the other.
 
-use crate::unit::Description;
-use crate::unit::system::{System, systems};
+use crate::model::Description;
+use crate::model::system::{System, systems};
 
 /// One end of a wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Member {
     /// Name that both ends of the wire share.
     pub name: &'static str,
-    /// The unit's own variable.
+    /// The model's own variable.
     pub variable: &'static str,
 }
 
-/// A unit's side of a loop.
+/// A model's side of a loop.
 #[derive(Clone, Debug)]
 pub struct Plug {
     pub system: &'static System,
@@ -24,7 +24,7 @@ pub struct Plug {
 }
 
 impl Plug {
-    /// The plugs of a unit, one for each loop that it is part of.
+    /// The plugs of a model, one for each loop that it is part of.
     pub fn all_of(description: &Description) -> Vec<Self> {
         systems().filter_map(|system| Self::new(description, system)).collect()
     }
@@ -61,13 +61,13 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
-    use crate::unit::variable::Causality;
+    use crate::model::variable::Causality;
 
     #[test]
     fn plugs_of_a_loop_match_and_outputs_meet_inputs() {
         for system in systems() {
-            let [plant, controller] = [system.plant, system.controller].map(|unit| {
-                let plugs = Plug::all_of(unit.description);
+            let [plant, controller] = [system.plant, system.controller].map(|model| {
+                let plugs = Plug::all_of(model.description);
                 plugs.into_iter().find(|plug| plug.system.name == system.name).unwrap()
             });
             assert_eq!(plant.kind(), controller.kind());

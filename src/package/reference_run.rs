@@ -1,25 +1,25 @@
-//! What a unit must answer to a given input: computed from the unit itself, without FMI, when the package is made.
+//! What a model must answer to a given input: computed from the model itself, without FMI, when the package is made.
 //!
-//! The inputs are those that the unit meets in its loop, with the package's start values in the unit and those of the
+//! The inputs are those that the model meets in its loop, with the package's start values in the model and those of the
 //! table in its partner. After a third of the run the inputs that the loop leaves free, such as a reference or a disturbing
 //! force, step by a twentieth of their nominal value, so that they matter as well.
 //!
 //! Some importers set the first row of inputs before the end of the initialisation, some after it. The run is the same
 //! either way: an input that an output at the start follows from keeps its start value over the first step.
 
-use crate::unit::system::{System, systems};
-use crate::unit::variable::{Causality, Kind, Variable};
-use crate::unit::{
-    ClosedLoop, Description, ExchangeOrder, Silence, StartValues, Unit, UnitError, UnitType, units,
+use crate::model::system::{System, systems};
+use crate::model::variable::{Causality, Kind, Variable};
+use crate::model::{
+    ClosedLoop, Description, ExchangeOrder, Silence, StartValues, Model, ModelError, ModelType, models,
 };
 
 /// Longest run \[s\]. The inputs of a reference run do not react to the plant, and levitation is unstable: what an
 /// importer rounds off its step size grows with e^(t / 20 ms) and worse.
 const LONGEST: f64 = 0.25;
-/// Most communication steps of a run, each of the unit's suggested size.
+/// Most communication steps of a run, each of the model's suggested size.
 const MOST_STEPS: usize = 1500;
 
-/// Inputs and outputs of a unit over some communication steps.
+/// Inputs and outputs of a model over some communication steps.
 #[derive(Clone, Debug)]
 pub struct ReferenceRun {
     /// \[s\]
@@ -37,16 +37,16 @@ pub struct Table {
 }
 
 impl ReferenceRun {
-    /// Runs the loop of the unit described, controller first; a unit without a loop runs alone.
+    /// Runs the loop of the model described, controller first; a model without a loop runs alone.
     ///
     /// Row k of the inputs holds over the step from k h to (k + 1) h, row k of the outputs at k h.
-    pub fn of(description: &'static Description, start_values: &StartValues) -> Result<Self, UnitError> {
+    pub fn of(description: &'static Description, start_values: &StartValues) -> Result<Self, ModelError> {
         let mut bench = Bench::new(description, start_values)?;
         let input = table_of(description, Causality::Input);
         let output = table_of(description, Causality::Output);
         let step_size = description.step_size;
         let mut run = Self { step_size, inputs: input, outputs: output };
-        run.outputs.record(0.0, bench.unit());
+        run.outputs.record(0.0, bench.model());
         let steps = number_of_steps(description);
         for step in 0..steps {
             if step == steps / 3 {
@@ -54,7 +54,7 @@ impl ReferenceRun {
             }
             let before = bench.advance(step_size)?;
             run.inputs.rows.push((step as f64 * step_size, run.inputs.values(&before)));
-            run.outputs.record((step + 1) as f64 * step_size, bench.unit());
+            run.outputs.record((step + 1) as f64 * step_size, bench.model());
         }
         Ok(run)
     }
@@ -74,15 +74,15 @@ fn table_of(description: &'static Description, causality: Causality) -> Table {
 }
 
 impl Table {
-    fn values(&self, unit: &[(&'static str, f64)]) -> Vec<f64> {
+    fn values(&self, model: &[(&'static str, f64)]) -> Vec<f64> {
         let value = |wanted: &&Variable| {
-            unit.iter().find(|(name, _)| *name == wanted.name).map_or(f64::NAN, |(_, value)| *value)
+            model.iter().find(|(name, _)| *name == wanted.name).map_or(f64::NAN, |(_, value)| *value)
         };
         self.variables.iter().map(value).collect()
     }
 
-    fn record(&mut self, time: f64, unit: &dyn Unit) {
-        let values = self.values(&named_values(unit));
+    fn record(&mut self, time: f64, model: &dyn Model) {
+        let values = self.values(&named_values(model));
         self.rows.push((time, values));
     }
 
@@ -107,12 +107,12 @@ impl Table {
     }
 }
 
-fn named_values(unit: &dyn Unit) -> Vec<(&'static str, f64)> {
-    let names = unit.description().variables.iter().map(|variable| variable.name);
-    names.zip(unit.values().iter().copied()).collect()
+fn named_values(model: &dyn Model) -> Vec<(&'static str, f64)> {
+    let names = model.description().variables.iter().map(|variable| variable.name);
+    names.zip(model.values().iter().copied()).collect()
 }
 
-/// The unit that is looked at, in its loop if it has one.
+/// The model that is looked at, in its loop if it has one.
 struct Bench {
     stage: Stage,
     free: Vec<usize>,
@@ -122,14 +122,14 @@ struct Bench {
 }
 
 enum Stage {
-    Alone(Box<dyn Unit>),
+    Alone(Box<dyn Model>),
     Plant(ClosedLoop),
     Controller(ClosedLoop),
 }
 
 impl Bench {
-    fn new(description: &'static Description, start_values: &StartValues) -> Result<Self, UnitError> {
-        let is_it = |unit: &UnitType| std::ptr::eq(unit.description, description);
+    fn new(description: &'static Description, start_values: &StartValues) -> Result<Self, ModelError> {
+        let is_it = |model: &ModelType| std::ptr::eq(model.description, description);
         let system = systems().find(|system| is_it(system.plant) || is_it(system.controller));
         let mut stage = match system {
             Some(system) => {
@@ -139,13 +139,13 @@ impl Bench {
                 if is_it(system.plant) { Stage::Plant(closed_loop) } else { Stage::Controller(closed_loop) }
             }
             None => {
-                let unit = units().find(|unit| is_it(unit)).expect("a unit of the list");
-                Stage::Alone((unit.create)())
+                let model = models().find(|model| is_it(model)).expect("a model of the list");
+                Stage::Alone((model.create)())
             }
         };
-        start_values.apply(stage.unit_mut());
+        start_values.apply(stage.model_mut());
         match &mut stage {
-            Stage::Alone(unit) => unit.start(0.0)?,
+            Stage::Alone(model) => model.start(0.0)?,
             Stage::Plant(closed_loop) | Stage::Controller(closed_loop) => closed_loop.start(0.0)?,
         }
         let wired: Vec<&str> = system
@@ -164,9 +164,9 @@ impl Bench {
         Ok(Self { stage, free, initial: initial_inputs(description), has_started: false })
     }
 
-    fn unit(&self) -> &dyn Unit {
+    fn model(&self) -> &dyn Model {
         match &self.stage {
-            Stage::Alone(unit) => &**unit,
+            Stage::Alone(model) => &**model,
             Stage::Plant(closed_loop) => &*closed_loop.plant,
             Stage::Controller(closed_loop) => &*closed_loop.controller,
         }
@@ -174,25 +174,25 @@ impl Bench {
 
     /// Moves the free inputs by a twentieth of their nominal values, as far as their range allows.
     fn disturb(&mut self) {
-        let unit = self.stage.unit_mut();
+        let model = self.stage.model_mut();
         for &reference in &self.free {
-            let variable = &unit.description().variables[reference];
+            let variable = &model.description().variables[reference];
             if let Kind::Real(quantity) = variable.kind {
-                let moved = unit.values()[reference] + 0.05 * quantity.nominal;
+                let moved = model.values()[reference] + 0.05 * quantity.nominal;
                 if variable.check(moved).is_ok() {
-                    unit.values_mut()[reference] = moved;
+                    model.values_mut()[reference] = moved;
                 }
             }
         }
     }
 
-    /// Steps the loop; returns what the unit's variables were when its own step began.
-    fn advance(&mut self, step_size: f64) -> Result<Vec<(&'static str, f64)>, UnitError> {
+    /// Steps the loop; returns what the model's variables were when its own step began.
+    fn advance(&mut self, step_size: f64) -> Result<Vec<(&'static str, f64)>, ModelError> {
         if let Stage::Plant(closed_loop) = &mut self.stage {
             closed_loop.step_controller()?;
         }
         let starts: Vec<f64> =
-            self.initial.iter().map(|reference| self.unit().values()[*reference]).collect();
+            self.initial.iter().map(|reference| self.model().values()[*reference]).collect();
         match &mut self.stage {
             Stage::Alone(_) => (),
             Stage::Plant(closed_loop) => closed_loop.actuate(),
@@ -200,12 +200,12 @@ impl Bench {
         }
         if !self.has_started {
             for (reference, start) in self.initial.iter().zip(starts) {
-                self.stage.unit_mut().values_mut()[*reference] = start;
+                self.stage.model_mut().values_mut()[*reference] = start;
             }
         }
         self.has_started = true;
-        let seen = named_values(self.unit());
-        self.stage.unit_mut().advance(step_size, &mut Silence)?;
+        let seen = named_values(self.model());
+        self.stage.model_mut().advance(step_size, &mut Silence)?;
         if let Stage::Controller(closed_loop) = &mut self.stage {
             closed_loop.step_plant()?;
         }
@@ -214,9 +214,9 @@ impl Bench {
 }
 
 impl Stage {
-    fn unit_mut(&mut self) -> &mut dyn Unit {
+    fn model_mut(&mut self) -> &mut dyn Model {
         match self {
-            Self::Alone(unit) => &mut **unit,
+            Self::Alone(model) => &mut **model,
             Self::Plant(closed_loop) => &mut *closed_loop.plant,
             Self::Controller(closed_loop) => &mut *closed_loop.controller,
         }
@@ -235,7 +235,7 @@ fn initial_inputs(description: &'static Description) -> Vec<usize> {
     sources.filter(|source| description.variables[*source].causality == Causality::Input).collect()
 }
 
-/// A unit that starts as in a package of its system meets the other one as it starts there.
+/// A model that starts as in a package of its system meets the other one as it starts there.
 fn apply_starts_of_partner(
     system: &System,
     description: &'static Description,
@@ -244,9 +244,9 @@ fn apply_starts_of_partner(
 ) {
     let own = system.start_values(description);
     if own.is_ok_and(|own| own != *StartValues::TABLE && start_values.include(&own)) {
-        for unit in [&mut closed_loop.plant, &mut closed_loop.controller] {
+        for model in [&mut closed_loop.plant, &mut closed_loop.controller] {
             // What cannot be packaged has been refused before.
-            system.start_values(unit.description()).unwrap_or_default().apply(&mut **unit);
+            system.start_values(model.description()).unwrap_or_default().apply(&mut **model);
         }
     }
 }
@@ -257,17 +257,17 @@ mod tests {
 
     /// In a package of the rig both sensors are adjusted; a plant with another sensor would lose its ball.
     #[test]
-    fn units_of_a_system_meet_each_other() {
+    fn models_of_a_system_meet_each_other() {
         let rig = System::find("rig").unwrap();
-        for unit in [rig.plant, rig.controller] {
-            let starts = rig.start_values(unit.description).unwrap();
-            let run = ReferenceRun::of(unit.description, &starts).unwrap();
+        for model in [rig.plant, rig.controller] {
+            let starts = rig.start_values(model.description).unwrap();
+            let run = ReferenceRun::of(model.description, &starts).unwrap();
             for table in [&run.inputs, &run.outputs] {
                 let sensor =
                     table.variables.iter().position(|variable| variable.name.starts_with("sensor_voltage"));
                 if let Some(column) = sensor {
                     let worst = table.rows.iter().map(|(_, row)| row[column].abs()).fold(0.0, f64::max);
-                    assert!(worst < 0.5, "{}: {worst} V off the operating point", unit.description.name);
+                    assert!(worst < 0.5, "{}: {worst} V off the operating point", model.description.name);
                 }
             }
         }

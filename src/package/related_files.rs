@@ -1,4 +1,4 @@
-//! What travels in `extra/` beside the unit itself: a reference input and the output that belongs to it.
+//! What travels in `extra/` beside the model itself: a reference input and the output that belongs to it.
 //!
 //! Layout and manifest follow the draft 1.0.0-alpha.1 of the layered standard FMI-LS-REF (Modelica Association,
 //! fmi-ls-ref), which holds for FMI 2.0 and FMI 3.0. The draft names the roles of files but no format for signals:
@@ -40,7 +40,7 @@ fn manifest(step_size: f64) -> String {
     let outputs = format!(
         "Outputs after initialization and after each step of {step_size:?} s with {INPUT}, to the last bit"
     );
-    let page = "What the unit models, its variables and how to wire it".to_owned();
+    let page = "What is modelled, the variables and how to wire it".to_owned();
     let related = [
         ("text/csv", INPUT, "testcase", inputs),
         ("text/csv", OUTPUT, "result", outputs),

@@ -1,11 +1,11 @@
 //! Figure of a reference run as SVG: a small chart for each real input and output, drawn from the same numbers as the
-//! tables that travel with the unit.
+//! tables that travel with the model.
 
 use quick_xml::escape::escape;
 
 use super::reference_run::{ReferenceRun, Table};
 use crate::chart::thin;
-use crate::unit::variable::{Kind, Variable};
+use crate::model::variable::{Kind, Variable};
 
 /// Lengths in the picture \[pixel\].
 const WIDTH: f64 = 290.0;
@@ -80,12 +80,12 @@ fn panel(variable: &Variable, points: Vec<(f64, f64)>, class: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::unit::units;
+    use crate::model::models;
 
     #[test]
     fn figures_show_every_real_variable() {
-        for unit in units() {
-            let run = ReferenceRun::of(unit.description, crate::unit::StartValues::TABLE).unwrap();
+        for model in models() {
+            let run = ReferenceRun::of(model.description, crate::model::StartValues::TABLE).unwrap();
             let text = run_figure(&run);
             resvg::usvg::Tree::from_str(&text, &resvg::usvg::Options::default()).unwrap();
             let variables = run.inputs.variables.iter().chain(&run.outputs.variables);
@@ -96,7 +96,7 @@ mod tests {
                 count += 1;
             }
             assert_eq!(text.matches("<polyline").count(), count);
-            assert!(!text.contains("NaN") && !text.contains("inf"), "{}", unit.description.name);
+            assert!(!text.contains("NaN") && !text.contains("inf"), "{}", model.description.name);
         }
     }
 }

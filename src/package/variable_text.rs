@@ -1,6 +1,6 @@
 //! A row of the variable table in words, for the documentation.
 
-use crate::unit::variable::{Causality, Kind, Variability, Variable};
+use crate::model::variable::{Causality, Kind, Variability, Variable};
 
 /// What kind of variable it is, as a user thinks of it.
 pub fn kind(variable: &Variable) -> &'static str {
@@ -25,7 +25,7 @@ pub fn unit(variable: &Variable) -> &'static str {
     }
 }
 
-/// Start value; empty if the unit computes the variable.
+/// Start value; empty if the model computes the variable.
 pub fn start(variable: &Variable, number: f64) -> String {
     if variable.is_calculated() { String::new() } else { value(variable.kind, number) }
 }

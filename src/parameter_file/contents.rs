@@ -8,16 +8,16 @@ use serde_json::{Map, Value};
 use super::ParameterFileError;
 use super::unique_keys;
 use crate::file::{self, WrittenFile};
-use crate::unit::start_values::StartValueError;
-use crate::unit::variable::{Kind, Variable};
-use crate::unit::{Description, StartValues, units};
+use crate::model::start_values::StartValueError;
+use crate::model::variable::{Kind, Variable};
+use crate::model::{Description, StartValues, models};
 
 /// Contents of a parameter file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ParameterFile {
-    /// Name of the unit.
-    pub unit: String,
+    /// Name of the model.
+    pub model: String,
     #[serde(deserialize_with = "unique_keys::map")]
     pub values: Map<String, Value>,
     #[serde(default, deserialize_with = "unique_keys::map")]
@@ -27,7 +27,7 @@ pub struct ParameterFile {
 }
 
 impl ParameterFile {
-    /// From variables of a unit and their values, of enumerations the name or number of an item.
+    /// From variables of a model and their values, of enumerations the name or number of an item.
     pub fn new<'a>(
         description: &'static Description,
         assignments: impl IntoIterator<Item = (&'a str, Value)>,
@@ -39,7 +39,7 @@ impl ParameterFile {
             values.insert(name.to_owned(), number(variable, value));
             units.insert(name.to_owned(), unit_text(variable, value).into());
         }
-        let file = Self { unit: description.name.to_owned(), values, units, provenance };
+        let file = Self { model: description.name.to_owned(), values, units, provenance };
         file.start_values()?;
         Ok(file)
     }
@@ -49,12 +49,12 @@ impl ParameterFile {
             .map_err(|source| ParameterFileError::Write { path: path.to_owned(), source })
     }
 
-    /// The unit's table and the values, checked by themselves and whether they fit together.
+    /// The model's table and the values, checked by themselves and whether they fit together.
     pub fn start_values(&self) -> Result<(&'static Description, StartValues), ParameterFileError> {
-        let unit = units()
-            .find(|unit| unit.description.name == self.unit)
-            .ok_or_else(|| ParameterFileError::UnknownUnit { name: self.unit.clone() })?;
-        let description = unit.description;
+        let model = models()
+            .find(|model| model.description.name == self.model)
+            .ok_or_else(|| ParameterFileError::UnknownModel { name: self.model.clone() })?;
+        let description = model.description;
         let mut start_values = StartValues::default();
         for (name, value) in &self.values {
             let (variable, number) = checked(description, name, value)?;
@@ -73,9 +73,9 @@ impl ParameterFile {
         if let Some(name) = self.units.keys().find(|name| !self.values.contains_key(*name)) {
             return Err(ParameterFileError::UnitWithoutValue { name: name.clone() });
         }
-        let mut unit = (unit.create)();
-        start_values.apply(&mut *unit);
-        unit.check_parameters()?;
+        let mut model = (model.create)();
+        start_values.apply(&mut *model);
+        model.check_parameters()?;
         Ok((description, start_values))
     }
 }
@@ -98,7 +98,7 @@ fn checked(
     name: &str,
     value: &Value,
 ) -> Result<(&'static Variable, f64), ParameterFileError> {
-    let unknown = || StartValueError::UnknownVariable { unit: description.name, name: name.to_owned() };
+    let unknown = || StartValueError::UnknownVariable { model: description.name, name: name.to_owned() };
     let (_, variable) = description.find(name).ok_or_else(unknown)?;
     let number = read_number(variable, value)?;
     StartValues::default().set(description, name, number)?;
@@ -151,7 +151,7 @@ fn read_number(variable: &Variable, value: &Value) -> Result<f64, ParameterFileE
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::unit::MAGNETIC_BEARING_CONTROLLER as CONTROLLER;
+    use crate::model::MAGNETIC_BEARING_CONTROLLER as CONTROLLER;
     use serde_json::json;
     use std::fs;
 
@@ -202,7 +202,7 @@ mod tests {
         let wrong_unit = message(json!({ "sample_time": 0.5 }), json!({ "sample_time": "ms" }));
         assert_eq!(wrong_unit, "sample_time is given in \"ms\": expected s");
         assert_eq!(message(json!({}), json!({ "sample_time": "s" })), "sample_time has a unit and no value");
-        let unknown = ParameterFile { unit: "Pendulum".to_owned(), ..file(json!({}), json!({})) };
+        let unknown = ParameterFile { model: "Pendulum".to_owned(), ..file(json!({}), json!({})) };
         assert!(unknown.start_values().unwrap_err().to_string().contains("MagneticBearingController"));
     }
 
@@ -211,7 +211,7 @@ mod tests {
     fn names_are_printed_escaped() {
         let name = "\u{1b}[31m\u{202e}gain\n";
         let escaped = r"\u{1b}[31m\u{202e}gain\n";
-        let unknown = ParameterFile { unit: name.to_owned(), ..file(json!({}), json!({})) };
+        let unknown = ParameterFile { model: name.to_owned(), ..file(json!({}), json!({})) };
         for message in [
             file(json!({ name: 1 }), json!({})).start_values().unwrap_err().to_string(),
             unknown.start_values().unwrap_err().to_string(),

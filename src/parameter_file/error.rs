@@ -6,8 +6,8 @@ use serde_json::Value;
 use thiserror::Error;
 
 use crate::causes::printable;
-use crate::unit::start_values::StartValueError;
-use crate::unit::{UnitError, units};
+use crate::model::start_values::StartValueError;
+use crate::model::{ModelError, models};
 
 /// Why a parameter file was refused.
 #[derive(Debug, Error)]
@@ -18,8 +18,8 @@ pub enum ParameterFileError {
     Syntax { path: PathBuf, reason: String },
     #[error("{} is in UTF-16, expected UTF-8", .path.display())]
     Encoding { path: PathBuf },
-    #[error("there is no unit {}, expected one of {}", name.escape_debug(), unit_names())]
-    UnknownUnit { name: String },
+    #[error("there is no model {}, expected one of {}", name.escape_debug(), model_names())]
+    UnknownModel { name: String },
     #[error("{} = {}: expected {expected}", name.escape_debug(), printable(&value.to_string()))]
     WrongKind { name: String, value: Value, expected: String },
     #[error("{} is given in {}: expected {expected}", name.escape_debug(), printable(&given.to_string()))]
@@ -29,11 +29,11 @@ pub enum ParameterFileError {
     #[error(transparent)]
     StartValue(#[from] StartValueError),
     #[error(transparent)]
-    DoNotFit(#[from] UnitError),
+    DoNotFit(#[from] ModelError),
     #[error("cannot write {}", .path.display())]
     Write { path: PathBuf, source: std::io::Error },
 }
 
-fn unit_names() -> String {
-    units().map(|unit| unit.description.name).collect::<Vec<_>>().join(", ")
+fn model_names() -> String {
+    models().map(|model| model.description.name).collect::<Vec<_>>().join(", ")
 }

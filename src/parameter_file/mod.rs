@@ -1,4 +1,4 @@
-//! Parameter files: values for the variables of one unit, with where they come from.
+//! Parameter files: values for the variables of one model, with where they come from.
 //!
 //! ```json
 //! {

@@ -6,7 +6,7 @@ use super::{ParameterFile, ParameterFileError};
 use crate::causes::with_causes;
 use crate::file;
 
-/// Far more than all variables of a unit with a long story in the provenance \[byte\].
+/// Far more than all variables of a model with a long story in the provenance \[byte\].
 pub const LARGEST: u64 = 1 << 20;
 
 /// Editors of Windows put it at the start of a file; RFC 8259, section 8.1, allows readers to ignore it.

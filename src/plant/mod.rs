@@ -1,4 +1,4 @@
-//! Continuous-time physics, one file per rig. Knows nothing of sampling policies, units or FMI.
+//! Continuous-time physics, one file per rig. Knows nothing of sampling policies, models or FMI.
 
 pub mod end_stops;
 pub mod levitated_ball;

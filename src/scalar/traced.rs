@@ -1,8 +1,8 @@
 //! What a result depends on, and how: numbers that remember the variables they were computed from.
 
 use super::Scalar;
-use crate::unit::LARGEST_TABLE;
-use crate::unit::structure::DependencyKind;
+use crate::model::LARGEST_TABLE;
+use crate::model::structure::DependencyKind;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 /// When a number can change, from never to always.

@@ -5,8 +5,8 @@ use std::path::Path;
 use super::StudyError;
 use super::run::Run;
 use crate::fmi::FmiVersion;
-use crate::host::{ExchangeOrder, Fmu, HostError, Instance, Logging, TwoUnitLoop, Value};
-use crate::unit::{System, UnitType};
+use crate::host::{ExchangeOrder, Fmu, HostError, Instance, Logging, ControlLoop, Value};
+use crate::model::{System, ModelType};
 
 /// Variable and value.
 pub type Parameter<'a> = (&'a str, Value<'a>);
@@ -21,9 +21,9 @@ pub struct LoopPackages {
 impl LoopPackages {
     /// Opens the system's FMI 3.0 packages below `packages`.
     pub fn open(packages: &Path, system: &'static System) -> Result<Self, HostError> {
-        let open = |unit: &UnitType| {
+        let open = |model: &ModelType| {
             let folder = packages.join(FmiVersion::Three.directory());
-            Fmu::open(&folder.join(unit.description.name).with_extension("fmu"))
+            Fmu::open(&folder.join(model.description.name).with_extension("fmu"))
         };
         Ok(Self { system, plant: open(system.plant)?, controller: open(system.controller)? })
     }
@@ -44,11 +44,11 @@ impl LoopPackages {
         plant: &[Parameter<'_>],
         controller: &[Parameter<'_>],
         sample_time: f64,
-    ) -> Result<TwoUnitLoop, HostError> {
+    ) -> Result<ControlLoop, HostError> {
         let (plant, mut controller) = (self.plant(plant)?, self.controller(controller)?);
         controller.set_by_name("sample_time", sample_time)?;
         let System { sensing, actuation, .. } = self.system;
-        TwoUnitLoop::connect(controller, plant, ExchangeOrder::ControllerFirst, sensing, actuation)
+        ControlLoop::connect(controller, plant, ExchangeOrder::ControllerFirst, sensing, actuation)
     }
 
     /// Runs the loop, controller first, for `duration` \[s\] with a tick every `sample_time` \[s\]; the last row is at the

@@ -1,4 +1,4 @@
-//! Experiments: what the papers show, reproduced through the packaged units, with claims, tables and pictures.
+//! Experiments: what the papers show, reproduced through the packaged models, with claims, tables and pictures.
 //!
 //! An experiment opens packages with the [`crate::host`], runs them, and hands back figures and claims; everything
 //! that is written to disk goes through [`output`].

@@ -20,8 +20,8 @@ pub fn html(findings: &[Findings], pictures: &[String]) -> String {
     let _ = write!(
         page,
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Reproduction report</title>\
-         <style>{STYLE}</style></head><body>\n<h1>What the papers claim and what the units do</h1>\n\
-         <p>Every number below was computed by maglev-fmu {} from runs of the packaged units; every verdict follows \
+         <style>{STYLE}</style></head><body>\n<h1>What the papers claim and what the models do</h1>\n\
+         <p>Every number below was computed by maglev-fmu {} from runs of the packaged models; every verdict follows \
          from its number by the stated criterion.</p>\n",
         env!("CARGO_PKG_VERSION")
     );

@@ -5,8 +5,8 @@ use std::cell::Cell;
 use std::fmt::{self, Write};
 
 use maglev_fmu::signal::BallReference;
-use maglev_fmu::unit::system::{BEARING, RIG};
-use maglev_fmu::unit::{Journal, Silence, Topic};
+use maglev_fmu::model::system::{BEARING, RIG};
+use maglev_fmu::model::{Journal, Silence, Topic};
 use maglev_fmu_test::bearing::OBSERVERS;
 use maglev_fmu_test::closed_loop::closed_loop;
 use maglev_fmu_test::values::{get, set};

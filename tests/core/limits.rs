@@ -1,8 +1,8 @@
 //! Controllers at the limits that their tables declare: whatever parameters and inputs, outputs are finite, and an observer
 //! that ran away counts it.
 
-use maglev_fmu::unit::variable::{Causality, Kind, Variability, Variable};
-use maglev_fmu::unit::{MaglevRigController, Silence, Unit, units};
+use maglev_fmu::model::variable::{Causality, Kind, Variability, Variable};
+use maglev_fmu::model::{MaglevRigController, Silence, Model, models};
 use maglev_fmu_test::values::{get, set};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
@@ -33,22 +33,22 @@ fn extreme(variable: &Variable, random: &mut Pcg32) -> f64 {
 
 #[test]
 fn outputs_are_finite_at_declared_limits() {
-    for unit in units().filter(|unit| unit.description.is_sampled()) {
-        let variables = unit.description.variables;
+    for model in models().filter(|model| model.description.is_sampled()) {
+        let variables = model.description.variables;
         let mut random = Pcg32::seed_from_u64(16);
         for run in 0..400 {
-            let mut unit = (unit.create)();
+            let mut model = (model.create)();
             for (row, variable) in variables.iter().enumerate().filter(|(_, row)| !row.is_calculated()) {
-                unit.values_mut()[row] = extreme(variable, &mut random);
+                model.values_mut()[row] = extreme(variable, &mut random);
             }
             // The steps below are those of the sample time.
-            let (longest_step, _) = unit.description().find("longest_step").unwrap();
-            unit.values_mut()[longest_step] = variables[longest_step].start;
-            unit.initialise(0.0).unwrap();
-            if unit.check_parameters().is_err() {
+            let (longest_step, _) = model.description().find("longest_step").unwrap();
+            model.values_mut()[longest_step] = variables[longest_step].start;
+            model.initialise(0.0).unwrap();
+            if model.check_parameters().is_err() {
                 continue;
             }
-            let sample_time = get(&*unit, "sample_time");
+            let sample_time = get(&*model, "sample_time");
             // Inputs rest, jump, and rest again at another value; some tunable parameters change on the way.
             for tick in 0..120 {
                 for (row, variable) in variables.iter().enumerate() {
@@ -59,16 +59,16 @@ fn outputs_are_finite_at_declared_limits() {
                         _ => is_tunable && random.next_u32() % 2000 == 0,
                     };
                     if changes {
-                        unit.values_mut()[row] = extreme(variable, &mut random);
+                        model.values_mut()[row] = extreme(variable, &mut random);
                     }
                 }
-                if unit.check_parameters().is_err() {
+                if model.check_parameters().is_err() {
                     break;
                 }
-                unit.adopt_parameters();
-                unit.advance(sample_time, &mut Silence).unwrap();
-                for (variable, value) in variables.iter().zip(unit.values()) {
-                    let name = unit.description().name;
+                model.adopt_parameters();
+                model.advance(sample_time, &mut Silence).unwrap();
+                for (variable, value) in variables.iter().zip(model.values()) {
+                    let name = model.description().name;
                     assert!(value.is_finite(), "{name}, run {run}, tick {tick}: {} = {value}", variable.name);
                 }
             }
@@ -78,23 +78,23 @@ fn outputs_are_finite_at_declared_limits() {
 
 #[test]
 fn the_rigs_nonlinear_observer_comes_back_from_its_limits() {
-    let mut unit = MaglevRigController::new();
+    let mut model = MaglevRigController::new();
     for (name, value) in
         [("observer.kind", 2.0), ("observer.discretisation", 1.0), ("observer.exponent[1]", 2.0)]
     {
-        set(&mut unit, name, value);
+        set(&mut model, name, value);
     }
-    unit.initialise(0.0).unwrap();
+    model.initialise(0.0).unwrap();
     let mut tick = |voltage: f64| {
-        set(&mut unit, "sensor_voltage", voltage);
-        unit.advance(1e-3, &mut Silence).unwrap();
+        set(&mut model, "sensor_voltage", voltage);
+        model.advance(1e-3, &mut Silence).unwrap();
         for name in
             ["observer.residual", "estimate.position", "estimate.velocity", "estimate.extended", "voltage"]
         {
-            let value = get(&unit, name);
-            assert!(value.is_finite(), "{name} = {value} at t = {}", get(&unit, "tick_time"));
+            let value = get(&model, name);
+            assert!(value.is_finite(), "{name} = {value} at t = {}", get(&model, "tick_time"));
         }
-        [get(&unit, "observer.restarts"), get(&unit, "observer.residual"), get(&unit, "estimate.position")]
+        [get(&model, "observer.restarts"), get(&model, "observer.residual"), get(&model, "estimate.position")]
     };
     for k in 0..60 {
         tick(if k % 2 == 0 { 5e5 } else { -5e5 });

@@ -1,4 +1,4 @@
-//! Plants, observers, control laws and the units made of them, natively: no FMI.
+//! Plants, observers, control laws and the models made of them, natively: no FMI.
 
 mod allocations;
 mod ball;

@@ -1,30 +1,30 @@
-//! The loops of the system packages with their start values, in a master as packages get: all units step at once, then
+//! The loops of the system packages with their start values, in a master as packages get: all models step at once, then
 //! exchange, and wires carry zeros in the first step. Not the bits are looked at but the physics.
 
-use maglev_fmu::unit::system::{BALL, BEARING, RIG, System};
-use maglev_fmu::unit::{ClosedLoop, ExchangeOrder, UnitError, UnitType};
+use maglev_fmu::model::system::{BALL, BEARING, RIG, System};
+use maglev_fmu::model::{ClosedLoop, ExchangeOrder, ModelError, ModelType};
 use maglev_fmu_test::closed_loop::closed_loop;
 use maglev_fmu_test::values::{get, set};
 
-/// The units as a package of a system starts them. Wires carry zeros before the first exchange.
+/// The models as a package of a system starts them. Wires carry zeros before the first exchange.
 fn started(system: &System, step_size: f64) -> ClosedLoop {
-    let mut units = ClosedLoop::of(system, ExchangeOrder::Parallel);
-    units.step_size = step_size;
-    for unit in [&mut units.plant, &mut units.controller] {
-        system.start_values(unit.description()).unwrap().apply(&mut **unit);
-        unit.initialise(0.0).unwrap();
+    let mut models = ClosedLoop::of(system, ExchangeOrder::Parallel);
+    models.step_size = step_size;
+    for model in [&mut models.plant, &mut models.controller] {
+        system.start_values(model.description()).unwrap().apply(&mut **model);
+        model.initialise(0.0).unwrap();
     }
     for wire in system.wires() {
         let is_of_plant = std::ptr::eq(wire.target, system.plant.description);
-        let unit = if is_of_plant { &mut units.plant } else { &mut units.controller };
-        set(&mut **unit, wire.input, 0.0);
+        let model = if is_of_plant { &mut models.plant } else { &mut models.controller };
+        set(&mut **model, wire.input, 0.0);
     }
-    units
+    models
 }
 
-/// As in the unit's table.
-fn start_value(unit: &UnitType, name: &str) -> f64 {
-    unit.description.find(name).unwrap().1.start
+/// As in the model's table.
+fn start_value(model: &ModelType, name: &str) -> f64 {
+    model.description.find(name).unwrap().1.start
 }
 
 /// Outputs `plant.*` and `controller.*` after each step.
@@ -35,13 +35,13 @@ struct Run {
 
 impl Run {
     /// Of the package, for `duration` \[s\] in steps of `step_size` \[s\]. Wires are zero before the first exchange.
-    fn of(system: &System, step_size: f64, duration: f64, plotted: [&[&str]; 2]) -> Result<Self, UnitError> {
-        let mut units = started(system, step_size);
+    fn of(system: &System, step_size: f64, duration: f64, plotted: [&[&str]; 2]) -> Result<Self, ModelError> {
+        let mut models = started(system, step_size);
         let mut run = Self { plant: Vec::new(), controller: Vec::new() };
         for _ in 0..(duration / step_size).round() as usize {
-            units.step()?;
-            run.plant.push(plotted[0].iter().map(|name| get(&*units.plant, name)).collect());
-            run.controller.push(plotted[1].iter().map(|name| get(&*units.controller, name)).collect());
+            models.step()?;
+            run.plant.push(plotted[0].iter().map(|name| get(&*models.plant, name)).collect());
+            run.controller.push(plotted[1].iter().map(|name| get(&*models.controller, name)).collect());
         }
         Ok(run)
     }
@@ -65,11 +65,11 @@ fn largest(values: &[f64]) -> f64 {
 /// Position of the bearing after `duration` \[s\] in the loop of the paper: the controller reads and ticks, then the
 /// plant moves on with the new voltage.
 fn bearing_of_the_paper(duration: f64) -> f64 {
-    let mut units = closed_loop(&BEARING, &[], &[]);
-    for _ in 0..(duration / units.step_size).round() as usize {
-        units.step().unwrap();
+    let mut models = closed_loop(&BEARING, &[], &[]);
+    for _ in 0..(duration / models.step_size).round() as usize {
+        models.step().unwrap();
     }
-    get(&*units.plant, "position")
+    get(&*models.plant, "position")
 }
 
 /// Samples that an observer needs.

@@ -33,11 +33,11 @@ unsafe extern "C-unwind" fn count_fmi3(environment: *mut c_void, _: i32, _: *con
     unsafe { &*environment.cast::<AtomicU32>() }.fetch_add(1, Ordering::Relaxed);
 }
 
-fn counting(standard: Standard, unit: &str, messages: &AtomicU32, logging_on: bool) -> Component {
+fn counting(standard: Standard, model: &str, messages: &AtomicU32, logging_on: bool) -> Component {
     type Fixed = unsafe extern "C-unwind" fn(*mut c_void, *const c_char, i32, *const c_char, *const c_char);
     // SAFETY: as for the recording logger of the harness.
     let logger2 = unsafe { transmute::<Fixed, fmi2CallbackLogger>(count_fmi2) };
-    let token = CString::new(description(unit).token().as_str()).unwrap();
+    let token = CString::new(description(model).token().as_str()).unwrap();
     let environment = core::ptr::from_ref(messages).cast_mut().cast();
     let none = core::ptr::null();
     // SAFETY: C strings; the counter outlives the instance.
@@ -46,7 +46,7 @@ fn counting(standard: Standard, unit: &str, messages: &AtomicU32, logging_on: bo
         instantiate_with(standard, none, token.as_ptr(), none, environment, logger2, logger3, logging_on)
     };
     assert!(!handle.is_null());
-    let component = Component::from_handle(standard, unit, handle, Box::default());
+    let component = Component::from_handle(standard, model, handle, Box::default());
     component.initialise(0.0);
     messages.store(0, Ordering::Relaxed);
     component
@@ -59,11 +59,11 @@ fn the_counter_counts() {
 
 #[test]
 fn steps_gets_and_sets_use_no_heap() {
-    for (standard, unit) in bearing() {
+    for (standard, model) in bearing() {
         for logging_on in [false, true] {
             let messages = AtomicU32::new(0);
-            let component = counting(standard, unit, &messages, logging_on);
-            let names = if unit == PLANT {
+            let component = counting(standard, model, &messages, logging_on);
+            let names = if model == PLANT {
                 ["voltage", "sensor.noise", "position", "velocity"]
             } else {
                 ["position", "controller.k2", "voltage", "estimate.flux"]
@@ -86,19 +86,19 @@ fn steps_gets_and_sets_use_no_heap() {
             });
             let messages = messages.load(Ordering::Relaxed);
             println!(
-                "{standard:?} {unit}, logging {logging_on}: {uses} uses of the heap, {messages} messages"
+                "{standard:?} {model}, logging {logging_on}: {uses} uses of the heap, {messages} messages"
             );
             assert_eq!(uses, 0);
-            assert_eq!(messages > 3, logging_on && unit == CONTROLLER, "the observer has something to say");
+            assert_eq!(messages > 3, logging_on && model == CONTROLLER, "the observer has something to say");
         }
     }
 }
 
 #[test]
 fn states_are_one_block_each() {
-    for (standard, unit) in all() {
+    for (standard, model) in all() {
         let messages = AtomicU32::new(0);
-        let component = counting(standard, unit, &messages, true);
+        let component = counting(standard, model, &messages, true);
         assert_eq!(component.step(0.0, 1e-3), OK);
         let (mut state, mut copy): (State, State) = (null_mut(), null_mut());
         let mut size = 0;
@@ -138,9 +138,9 @@ fn states_are_one_block_each() {
 
 #[test]
 fn ticks_at_events_and_on_activation_use_no_heap() {
-    for unit in clocked::sampled_units() {
+    for model in clocked::sampled_models() {
         let events = Choices { event_mode: true, early_return: true, intermediate_update: None };
-        let component = Component::co_simulation(unit, events);
+        let component = Component::co_simulation(model, events);
         component.initialise(0.0);
         component.settle_event();
         assert_eq!(component.enter_step_mode(), OK);
@@ -160,9 +160,9 @@ fn ticks_at_events_and_on_activation_use_no_heap() {
                 assert_eq!(component.enter_step_mode(), OK);
             }
         });
-        assert_eq!(uses, 0, "{unit} at events");
+        assert_eq!(uses, 0, "{model} at events");
 
-        let component = Component::scheduled(unit, None);
+        let component = Component::scheduled(model, None);
         component.initialise(0.0);
         // SAFETY: a live handle.
         unsafe { fmi3SetDebugLogging(component.handle, 0, 0, null_mut()) };
@@ -171,17 +171,17 @@ fn ticks_at_events_and_on_activation_use_no_heap() {
                 assert_eq!(component.activate(f64::from(k) * 1e-3), OK);
             }
         });
-        assert_eq!(uses, 0, "{unit} on activation");
+        assert_eq!(uses, 0, "{model} on activation");
     }
 }
 
 #[test]
 fn refusals_use_no_heap() {
-    for (standard, unit) in bearing() {
+    for (standard, model) in bearing() {
         for logging_on in [false, true] {
             let messages = AtomicU32::new(0);
-            let component = counting(standard, unit, &messages, logging_on);
-            let input = if unit == PLANT { "voltage" } else { "position" };
+            let component = counting(standard, model, &messages, logging_on);
+            let input = if model == PLANT { "voltage" } else { "position" };
             let input = component.reference(input);
             let uses = uses_of_the_heap(|| {
                 for wrong in [f64::NAN, f64::INFINITY, -1.0, 0.0] {
@@ -195,7 +195,7 @@ fn refusals_use_no_heap() {
                 assert_eq!(component.get_reals(&[999], &mut [0.0]), ERROR);
                 assert_eq!(component.exit_initialization(), ERROR);
             });
-            assert_eq!(uses, 0, "{standard:?} {unit}, logging {logging_on}");
+            assert_eq!(uses, 0, "{standard:?} {model}, logging {logging_on}");
             assert_eq!(messages.load(Ordering::Relaxed), 14, "each with a message, logging on or off");
         }
     }

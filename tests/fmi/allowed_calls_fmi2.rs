@@ -13,7 +13,7 @@ use super::harness::OK;
 use super::life_cycle::Outcome::{self, Discards, NotOffered, PlantsOnly, Refuses, Works};
 use super::life_cycle::Row;
 
-/// One reference of each type that both units have: the time, a real.
+/// One reference of each type that both models have: the time, a real.
 static TIME: u32 = 0;
 
 fn row(

@@ -1,5 +1,5 @@
 //! FMI 3.0.2, sections 2.3 and 4.2: the function calls that the text allows in Instantiated, Initialization Mode,
-//! Step Mode and Terminated of a co-simulation unit without event mode.
+//! Step Mode and Terminated of a co-simulation model without event mode.
 
 use core::ffi::c_void;
 use core::ptr::{null, null_mut};
@@ -10,7 +10,7 @@ use super::harness::OK;
 use super::life_cycle::Outcome::{self, NotOffered, PlantsOnly, Refuses, Works};
 use super::life_cycle::Row;
 
-/// The time, a Float64 of both units.
+/// The time, a Float64 of both models.
 static TIME: u32 = 0;
 
 fn row(

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use maglev_fmu::unit::units;
-use maglev_fmu::unit::variable::{Causality, Kind, Variability, Variable};
+use maglev_fmu::model::models;
+use maglev_fmu::model::variable::{Causality, Kind, Variability, Variable};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 
@@ -64,7 +64,7 @@ fn has_moved(variable: &Variable, before: f64, after: f64) -> bool {
 
 /// Records which of `unknowns` move when `known` is changed by `change`, which may leave it as it was.
 fn record(component: &Component, unknowns: &[u32], known: u32, moved: &mut Moved, change: impl FnOnce()) {
-    // Nothing where the unit refuses to be initialised with what it has been given.
+    // Nothing where the model refuses to be initialised with what it has been given.
     let read = || -> Vec<Option<f64>> {
         let values = unknowns.iter().map(|row| component.get_reference(*row));
         values.map(|(status, value)| (status == OK).then_some(value)).collect()
@@ -81,14 +81,14 @@ fn record(component: &Component, unknowns: &[u32], known: u32, moved: &mut Moved
     }
 }
 
-/// One instance per interface that the unit offers: one description is for all of them, so that what it declares has to
+/// One instance per interface that the model offers: one description is for all of them, so that what it declares has to
 /// be seen in one of them at least.
-fn instances(unit: &str) -> Vec<Component> {
-    let stepped = Component::with_logging(Standard::Fmi3, unit, false);
+fn instances(model: &str) -> Vec<Component> {
+    let stepped = Component::with_logging(Standard::Fmi3, model, false);
     if !stepped.description.offers_model_exchange() {
         return vec![stepped];
     }
-    vec![stepped, Component::exchanged(Standard::Fmi3, unit)]
+    vec![stepped, Component::exchanged(Standard::Fmi3, model)]
 }
 
 fn initial_unknowns(component: &Component) -> Vec<u32> {
@@ -100,8 +100,8 @@ fn initial_unknowns(component: &Component) -> Vec<u32> {
 
 #[test]
 fn initial_values_follow_from_what_is_declared() {
-    for unit in units() {
-        let name = unit.description.name;
+    for model in models() {
+        let name = model.description.name;
         let mut random = Pcg32::seed_from_u64(1);
         let mut moved = Moved::new();
         for component in instances(name) {
@@ -145,12 +145,12 @@ fn initial_values_follow_from_what_is_declared() {
 
 /// Asserts that what moved is what was declared, and names the differences.
 #[track_caller]
-fn compare(unit: &str, moved: &Moved, declared: &Moved) {
+fn compare(model: &str, moved: &Moved, declared: &Moved) {
     let undeclared: Vec<_> = moved.difference(declared).collect();
     let unmoved: Vec<_> = declared.difference(moved).collect();
     assert!(
         undeclared.is_empty() && unmoved.is_empty(),
-        "{unit}: undeclared {undeclared:?}, never seen {unmoved:?}"
+        "{model}: undeclared {undeclared:?}, never seen {unmoved:?}"
     );
 }
 
@@ -184,8 +184,8 @@ fn declared(component: &Component, of: impl Fn(&Variable) -> bool) -> Moved {
 
 #[test]
 fn at_a_communication_point_outputs_follow_from_what_is_declared() {
-    for unit in units() {
-        let name = unit.description.name;
+    for model in models() {
+        let name = model.description.name;
         let (mut random, mut moved) = (Pcg32::seed_from_u64(2), Moved::new());
         let is_known = |row: &Variable| {
             row.causality == Causality::Input
@@ -216,10 +216,10 @@ fn at_a_communication_point_outputs_follow_from_what_is_declared() {
 
 #[test]
 fn in_continuous_time_outputs_follow_from_what_is_declared() {
-    for (standard, unit) in plants() {
+    for (standard, model) in plants() {
         let (mut random, mut moved) = (Pcg32::seed_from_u64(3), Moved::new());
         for start in 0..3 {
-            let component = Component::exchanged(standard, unit);
+            let component = Component::exchanged(standard, model);
             place(&component, start);
             component.initialise(0.0);
             component.update_discrete_states();
@@ -243,12 +243,12 @@ fn in_continuous_time_outputs_follow_from_what_is_declared() {
                 }
             }
         }
-        let component = Component::exchanged(standard, unit);
+        let component = Component::exchanged(standard, model);
         let states: Vec<usize> = component.description.continuous_states().map(|(state, _)| state).collect();
         let is_state = |row: &Variable| {
             states.iter().any(|state| component.description.variables[*state].name == row.name)
         };
         let declared = declared(&component, |row| row.causality == Causality::Input || is_state(row));
-        compare(unit, &moved, &declared);
+        compare(model, &moved, &declared);
     }
 }

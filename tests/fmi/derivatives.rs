@@ -2,7 +2,7 @@
 
 use maglev_fmu::fmi::fmi2::fmi2SetRealInputDerivatives;
 use maglev_fmu::fmi::fmi3::fmi3GetAdjointDerivative;
-use maglev_fmu::unit::variable::{Causality, Kind, Variability};
+use maglev_fmu::model::variable::{Causality, Kind, Variability};
 use proptest::prelude::*;
 
 use super::harness::{BOTH, Component, DISCARD, ERROR, OK, Standard, plants};
@@ -72,8 +72,8 @@ proptest! {
     fn partial_derivatives_are_those_of_the_values(
         shares in prop::array::uniform4(-1.0..1.0f64), forces in prop::array::uniform2(0.1..1.0f64),
     ) {
-        for (standard, unit) in plants() {
-            let component = Component::in_continuous_time(standard, unit);
+        for (standard, model) in plants() {
+            let component = Component::in_continuous_time(standard, model);
             let states = moved_states(&component, &shares);
             prop_assert_eq!(component.set_states(&states), OK);
             for (input, share) in inputs(&component).into_iter().zip(forces) {
@@ -99,7 +99,7 @@ proptest! {
                     }
                     let difference = slope(size, at);
                     at(0.0);
-                    let context = format!("{unit}: {name} by state {index}");
+                    let context = format!("{model}: {name} by state {index}");
                     assert_close(component.partial(unknown, *known), difference, scale(&component, unknown, *known), &context);
                 }
                 for known in inputs(&component) {
@@ -110,7 +110,7 @@ proptest! {
                     };
                     let difference = slope(nominal(&component, known), at);
                     at(0.0);
-                    let context = format!("{unit}: {name} by {}", component.variable(known).name);
+                    let context = format!("{model}: {name} by {}", component.variable(known).name);
                     assert_close(component.partial(unknown, known), difference, scale(&component, unknown, known), &context);
                 }
             }
@@ -119,11 +119,11 @@ proptest! {
 
     #[test]
     fn initial_partial_derivatives_are_those_of_initialisation(shares in prop::collection::vec(0.8..1.2f64, 64)) {
-        let instances = plants().flat_map(|(standard, unit)| {
-            [Component::new(standard, unit), Component::exchanged(standard, unit)]
+        let instances = plants().flat_map(|(standard, model)| {
+            [Component::new(standard, model), Component::exchanged(standard, model)]
         });
         for component in instances {
-            let unit = component.description.name;
+            let model = component.description.name;
             prop_assert_eq!(component.enter_initialization(0.0, None), OK);
             let knowns = reals(&component, |row| matches!(component.variable(row).causality, Causality::Parameter | Causality::Input));
             for (known, share) in knowns.iter().zip(&shares) {
@@ -156,7 +156,7 @@ proptest! {
                     let difference = slope(value.abs(), at);
                     at(0.0);
                     let size = nominal(&component, *unknown).max(component.get_reference(*unknown).1.abs()) / value.abs();
-                    let context = format!("{unit}: initial {} by {}", component.variable(*unknown).name, row.name);
+                    let context = format!("{model}: initial {} by {}", component.variable(*unknown).name, row.name);
                     assert_close(component.partial(*unknown, *known), difference, size, &context);
                 }
             }
@@ -165,11 +165,11 @@ proptest! {
 
     #[test]
     fn outputs_move_with_their_slopes(ramp in -1.0..1.0f64, shares in prop::array::uniform2(0.1..1.0f64)) {
-        for (standard, unit) in plants() {
+        for (standard, model) in plants() {
             let duration = 1e-3;
             // Steps to a time close to `duration`.
             let stepped = |offset: f64| {
-                let component = Component::new(standard, unit);
+                let component = Component::new(standard, model);
                 component.initialise(0.0);
                 for (input, share) in inputs(&component).into_iter().zip(shares) {
                     assert_eq!(component.set_reference(input, 0.1 * share * nominal(&component, input)), OK);
@@ -192,7 +192,7 @@ proptest! {
                 }
                 let difference = slope(0.1 * duration, |offset| stepped(offset).get_reference(output).1);
                 let size = nominal(&end, output).max(end.get_reference(output).1.abs()) / duration;
-                let context = format!("{unit}: slope of {}", end.variable(output).name);
+                let context = format!("{model}: slope of {}", end.variable(output).name);
                 assert_close(exact, difference, 1e-1 * size, &context);
             }
         }
@@ -252,8 +252,8 @@ fn derivatives_that_overflow_are_discarded_like_values() {
 
 #[test]
 fn parameters_keep_their_derivatives_after_initialisation() {
-    for (standard, unit) in plants() {
-        let component = Component::exchanged(standard, unit);
+    for (standard, model) in plants() {
+        let component = Component::exchanged(standard, model);
         assert_eq!(component.set("initial.velocity", 0.01), OK);
         assert_eq!(component.enter_initialization(0.0, None), OK);
         let knowns = reals(&component, |row| {
@@ -275,27 +275,27 @@ fn parameters_keep_their_derivatives_after_initialisation() {
                 knowns.iter().map(|k| {
                     states
                         .iter()
-                        .map(|s| component.partial(*u, *s) * initial_slope(standard, unit, *s, *k))
+                        .map(|s| component.partial(*u, *s) * initial_slope(standard, model, *s, *k))
                         .sum::<f64>()
                 })
             })
             .collect();
         for ((before, after), owed) in before.iter().zip(jacobian()).zip(owed) {
-            assert!((before - after - owed).abs() <= 1e-12 * before.abs().max(1.0), "{unit}");
+            assert!((before - after - owed).abs() <= 1e-12 * before.abs().max(1.0), "{model}");
         }
     }
 }
 
-fn initial_slope(standard: Standard, unit: &str, state: u32, parameter: u32) -> f64 {
-    let component = Component::new(standard, unit);
+fn initial_slope(standard: Standard, model: &str, state: u32, parameter: u32) -> f64 {
+    let component = Component::new(standard, model);
     assert_eq!(component.enter_initialization(0.0, None), OK);
     component.partial(state, parameter)
 }
 
 #[test]
 fn adjoint_derivatives_are_the_transposed_ones() {
-    for (_, unit) in plants().filter(|(standard, _)| *standard == Standard::Fmi3) {
-        let component = Component::in_continuous_time(Standard::Fmi3, unit);
+    for (_, model) in plants().filter(|(standard, _)| *standard == Standard::Fmi3) {
+        let component = Component::in_continuous_time(Standard::Fmi3, model);
         let unknowns = unknowns(&component);
         let mut knowns = inputs(&component);
         knowns.extend(component.description.continuous_states().map(|(state, _)| state as u32));
@@ -330,9 +330,9 @@ fn adjoint_derivatives_are_the_transposed_ones() {
 
 #[test]
 fn a_ramp_is_the_limit_of_short_held_steps() {
-    for (_, unit) in plants().filter(|(standard, _)| *standard == Standard::Fmi2) {
+    for (_, model) in plants().filter(|(standard, _)| *standard == Standard::Fmi2) {
         let new = || {
-            let component = Component::new(Standard::Fmi2, unit);
+            let component = Component::new(Standard::Fmi2, model);
             component.initialise(0.0);
             component
         };
@@ -368,7 +368,7 @@ fn a_ramp_is_the_limit_of_short_held_steps() {
         for ((state, _), size) in ramp.description.continuous_states().zip(size) {
             let name = ramp.description.variables[state].name;
             let (one, many) = (ramp.get(name), held.get(name));
-            assert!((one - many).abs() < 1e-7 * size, "{unit} {name}: {one} {many}");
+            assert!((one - many).abs() < 1e-7 * size, "{model} {name}: {one} {many}");
         }
         // The input has moved along, and the mean of the last step is told.
         for (input, (begin, slope)) in inputs.iter().zip(begin.iter().zip(&slopes)) {

@@ -1,11 +1,11 @@
-//! Plain and clocked editions of the sampled units: the token selects what an importer may do and sees, and nothing else.
+//! Plain and clocked editions of the sampled models: the token selects what an importer may do and sees, and nothing else.
 
 use core::ptr::{null, null_mut};
 
 use maglev_fmu::fmi::fmi3::*;
-use maglev_fmu::unit::Edition;
+use maglev_fmu::model::Edition;
 
-use super::harness::clocked::{Choices, co_simulation_of, sampled_units};
+use super::harness::clocked::{Choices, co_simulation_of, sampled_models};
 use super::harness::{Component, ERROR, OK, Phase, Recorder, Standard, fmi3_logger, token};
 
 const EVENTS: Choices = Choices { event_mode: true, early_return: true, intermediate_update: None };
@@ -18,8 +18,8 @@ fn refusal(recorder: &Recorder, handle: *mut core::ffi::c_void) -> String {
     messages[0].text.clone()
 }
 
-fn schedule(edition: Edition, unit: &str, recorder: &Recorder) -> *mut core::ffi::c_void {
-    let (name, token, log) = (c"x".as_ptr(), token(unit, edition), Some(fmi3_logger as _));
+fn schedule(edition: Edition, model: &str, recorder: &Recorder) -> *mut core::ffi::c_void {
+    let (name, token, log) = (c"x".as_ptr(), token(model, edition), Some(fmi3_logger as _));
     let environment = recorder.environment();
     // SAFETY: C strings, a living recorder, no other callbacks.
     unsafe {
@@ -40,20 +40,20 @@ fn schedule(edition: Edition, unit: &str, recorder: &Recorder) -> *mut core::ffi
 
 #[test]
 fn what_needs_clocks_is_refused_with_the_package_that_has_it() {
-    for unit in sampled_units() {
+    for model in sampled_models() {
         let recorder = Recorder::default();
         for (edition, is_offered) in [(Edition::Plain, false), (Edition::Clocked, true)] {
             let made = [
-                co_simulation_of(edition, unit, EVENTS, recorder.environment()),
-                schedule(edition, unit, &recorder),
+                co_simulation_of(edition, model, EVENTS, recorder.environment()),
+                schedule(edition, model, &recorder),
             ];
             let asked = ["co-simulation with event mode", "scheduled execution"];
             for (handle, asked) in made.into_iter().zip(asked) {
                 if is_offered {
-                    assert!(!handle.is_null(), "{unit}: {:?}", recorder.messages());
-                    drop(Component::from_handle(Standard::Fmi3, unit, handle, Box::default()));
+                    assert!(!handle.is_null(), "{model}: {:?}", recorder.messages());
+                    drop(Component::from_handle(Standard::Fmi3, model, handle, Box::default()));
                 } else {
-                    assert!(handle.is_null(), "{unit}: {asked}");
+                    assert!(handle.is_null(), "{model}: {asked}");
                 }
             }
             if is_offered {
@@ -62,12 +62,12 @@ fn what_needs_clocks_is_refused_with_the_package_that_has_it() {
             recorder.clear();
             let said = |asked| {
                 format!(
-                    "{unit} does not offer {asked}, only co-simulation; its package fmi3-clocked/{unit}.fmu does"
+                    "{model} does not offer {asked}, only co-simulation; its package fmi3-clocked/{model}.fmu does"
                 )
             };
-            let text = refusal(&recorder, co_simulation_of(edition, unit, EVENTS, recorder.environment()));
+            let text = refusal(&recorder, co_simulation_of(edition, model, EVENTS, recorder.environment()));
             assert!(text.ends_with(&said(asked[0])), "{text}");
-            let text = refusal(&recorder, schedule(edition, unit, &recorder));
+            let text = refusal(&recorder, schedule(edition, model, &recorder));
             assert!(text.ends_with(&said(asked[1])), "{text}");
         }
     }
@@ -86,9 +86,9 @@ fn no_package_is_named_where_none_offers_what_is_asked_for() {
 
 #[test]
 fn clocks_exist_in_the_clocked_edition_only() {
-    for unit in sampled_units() {
+    for model in sampled_models() {
         for (edition, exist) in [(Edition::Plain, false), (Edition::Clocked, true)] {
-            let component = Component::co_simulation_of(edition, unit, Choices::default());
+            let component = Component::co_simulation_of(edition, model, Choices::default());
             assert_eq!(component.enter_initialization(0.0, None), OK);
             component.recorder.clear();
             let [tick, _] = component.clocks();
@@ -111,7 +111,7 @@ fn clocks_exist_in_the_clocked_edition_only() {
                     fmi3GetShiftFraction(component.handle, &tick, 1, &mut counts.0, &mut counts.1),
                 ]
             };
-            assert_eq!(of_tick, [if exist { OK } else { ERROR }; 4], "{unit}, {edition:?}");
+            assert_eq!(of_tick, [if exist { OK } else { ERROR }; 4], "{model}, {edition:?}");
             if !exist {
                 let messages = component.recorder.take();
                 assert_eq!(messages.len(), of_tick.len());
@@ -147,29 +147,29 @@ fn step_with_events(component: &Component, from: u32, to: u32) {
 
 #[test]
 fn saved_states_cross_the_editions_where_the_phase_exists() {
-    // Not every sample time is 1 ms; the clock is the unit's own either way.
-    for unit in sampled_units().filter(|unit| super::harness::description(unit).step_size == 1e-3) {
-        let clocked = Component::co_simulation(unit, EVENTS);
+    // Not every sample time is 1 ms; the clock is the model's own either way.
+    for model in sampled_models().filter(|model| super::harness::description(model).step_size == 1e-3) {
+        let clocked = Component::co_simulation(model, EVENTS);
         clocked.initialise(0.0);
         let in_event_mode = clocked.saved_bytes();
         step_with_events(&clocked, 0, 20);
         let bytes = clocked.saved_bytes();
 
-        let plain = Component::in_phase(Standard::Fmi3, unit, Phase::Step);
+        let plain = Component::in_phase(Standard::Fmi3, model, Phase::Step);
         assert_eq!(plain.restore_bytes(&bytes), OK, "{:?}", plain.recorder.messages());
         assert_eq!(plain.snapshot(), clocked.snapshot());
         for k in 20..40 {
             assert_eq!(plain.step(f64::from(k) * 1e-3, 1e-3), OK);
         }
         step_with_events(&clocked, 20, 40);
-        assert_eq!(plain.snapshot(), clocked.snapshot(), "{unit}: clocked to plain");
+        assert_eq!(plain.snapshot(), clocked.snapshot(), "{model}: clocked to plain");
 
         assert_eq!(clocked.restore_bytes(&plain.saved_bytes()), OK, "{:?}", clocked.recorder.messages());
         step_with_events(&clocked, 40, 60);
         for k in 40..60 {
             assert_eq!(plain.step(f64::from(k) * 1e-3, 1e-3), OK);
         }
-        assert_eq!(plain.snapshot(), clocked.snapshot(), "{unit}: plain to clocked");
+        assert_eq!(plain.snapshot(), clocked.snapshot(), "{model}: plain to clocked");
 
         // Event mode is a place where a plain instance never is.
         plain.recorder.clear();
@@ -178,11 +178,11 @@ fn saved_states_cross_the_editions_where_the_phase_exists() {
 }
 
 #[test]
-fn clocked_editions_of_units_without_clocks_do_not_exist() {
+fn clocked_editions_of_models_without_clocks_do_not_exist() {
     let recorder = Recorder::default();
-    let unit = super::harness::PLANT;
+    let model = super::harness::PLANT;
     // The token is the plain one's, and so is what it selects.
-    assert_eq!(token(unit, Edition::Clocked), token(unit, Edition::Plain));
-    let handle = co_simulation_of(Edition::Clocked, unit, EVENTS, recorder.environment());
+    assert_eq!(token(model, Edition::Clocked), token(model, Edition::Plain));
+    let handle = co_simulation_of(Edition::Clocked, model, EVENTS, recorder.environment());
     assert_eq!(handle, null_mut());
 }

@@ -1,25 +1,25 @@
-//! Event mode of the sampled units: when events are announced, what happens at them, and what clocks tell.
+//! Event mode of the sampled models: when events are announced, what happens at them, and what clocks tell.
 
 use core::ptr::null_mut;
 
 use maglev_fmu::fmi::fmi3::*;
-use maglev_fmu::unit::variable::Causality;
+use maglev_fmu::model::variable::Causality;
 
-use super::harness::clocked::{Choices, Step, Update, co_simulation, sampled_units};
+use super::harness::clocked::{Choices, Step, Update, co_simulation, sampled_models};
 use super::harness::{CONTROLLER, Component, ERROR, OK, PLANT, Phase, Recorder, Standard};
 
 const EVENTS: Choices = Choices { event_mode: true, early_return: true, intermediate_update: None };
 
 /// In the event mode that follows initialisation.
-fn initialised(unit: &str, start_time: f64) -> Component {
-    let component = Component::co_simulation(unit, EVENTS);
+fn initialised(model: &str, start_time: f64) -> Component {
+    let component = Component::co_simulation(model, EVENTS);
     component.initialise(start_time);
     component
 }
 
 /// In step mode, the events at the start behind it.
-fn stepping(unit: &str) -> Component {
-    let component = initialised(unit, 0.0);
+fn stepping(model: &str) -> Component {
+    let component = initialised(model, 0.0);
     component.settle_event();
     assert_eq!(component.enter_step_mode(), OK);
     component.recorder.clear();
@@ -28,8 +28,8 @@ fn stepping(unit: &str) -> Component {
 
 #[test]
 fn steps_end_at_ticks() {
-    for unit in sampled_units() {
-        let component = initialised(unit, 0.0);
+    for model in sampled_models() {
+        let component = initialised(model, 0.0);
         assert_eq!(component.set("sample_time", 1e-3), ERROR, "fixed");
         let period = component.get("sample_time");
         assert_eq!(component.settle_event(), period);
@@ -71,8 +71,8 @@ fn steps_end_at_ticks() {
 
 #[test]
 fn a_tick_runs_when_its_clock_was_activated() {
-    for unit in sampled_units() {
-        let component = initialised(unit, 0.0);
+    for model in sampled_models() {
+        let component = initialised(model, 0.0);
         let [tick, ticked] = component.clocks();
         // Some outputs start from the inputs, so that the first tick would change nothing.
         move_inputs(&component, 0);
@@ -89,8 +89,8 @@ fn a_tick_runs_when_its_clock_was_activated() {
         assert_eq!(component.snapshot(), before, "by the model structure outputs depend on no clock");
         let update = component.end_event_iteration();
         assert_eq!(update, Update { is_unfinished: true, ..idle });
-        assert_eq!(clocks(), [(OK, 0); 2], "the unit deactivates its clocks");
-        assert_ne!(component.snapshot(), before, "{unit}");
+        assert_eq!(clocks(), [(OK, 0); 2], "the model deactivates its clocks");
+        assert_ne!(component.snapshot(), before, "{model}");
         // "Periodic clocks must not be active for more than one call of fmi3UpdateDiscreteStates per Event Mode."
         let after = component.snapshot();
         component.recorder.clear();
@@ -101,7 +101,7 @@ fn a_tick_runs_when_its_clock_was_activated() {
     }
 }
 
-/// Sets another value in every input of a unit.
+/// Sets another value in every input of a model.
 fn move_inputs(component: &Component, k: u32) {
     let inputs = component.description.variables.iter().filter(|row| row.causality == Causality::Input);
     for (number, input) in inputs.enumerate() {
@@ -112,9 +112,9 @@ fn move_inputs(component: &Component, k: u32) {
 
 #[test]
 fn a_tick_reads_the_inputs_at_its_activation_or_at_the_end_of_the_event() {
-    for unit in sampled_units() {
+    for model in sampled_models() {
         let [iterating, ignorant, stepping] = [EVENTS, EVENTS, Choices::default()].map(|choices| {
-            let component = Component::co_simulation(unit, choices);
+            let component = Component::co_simulation(model, choices);
             component.initialise(0.0);
             component
         });
@@ -135,7 +135,7 @@ fn a_tick_reads_the_inputs_at_its_activation_or_at_the_end_of_the_event() {
                 assert_eq!(component.enter_step_mode(), OK);
                 let step = component.step_to_event(time, period);
                 assert!(step.status == OK && step.is_event, "{step:?}");
-                assert_eq!(component.snapshot(), stepping.snapshot(), "{unit}, tick {k}");
+                assert_eq!(component.snapshot(), stepping.snapshot(), "{model}, tick {k}");
                 assert_eq!(component.enter_event_mode(), OK);
             }
         }
@@ -151,7 +151,7 @@ fn clocks_are_refused_where_they_make_no_sense() {
         component.set_clock(tick, 1),
         &["no tick is due at t = 0.0005 s: expected t = 0.001 s"],
     );
-    component.assert_refused(component.set_clock(ticked, 1), &["ticked", "the unit itself activates"]);
+    component.assert_refused(component.set_clock(ticked, 1), &["ticked", "the model itself activates"]);
     component.assert_refused(component.set_clock(ticked + 1, 1), &["value reference", "is unknown"]);
     component
         .assert_refused(component.get_clock(0).0, &["time (value reference 0) is a variable, not a clock"]);
@@ -169,14 +169,14 @@ fn clocks_are_refused_where_they_make_no_sense() {
 }
 
 #[test]
-fn units_without_ticks_have_no_event_mode() {
+fn models_without_ticks_have_no_event_mode() {
     let recorder = Recorder::default();
     assert!(co_simulation(PLANT, EVENTS, recorder.environment()).is_null());
     assert!(
         recorder.messages().last().unwrap().text.contains("does not offer co-simulation with event mode")
     );
-    for unit in [PLANT, CONTROLLER] {
-        let component = Component::in_phase(Standard::Fmi3, unit, Phase::Step);
+    for model in [PLANT, CONTROLLER] {
+        let component = Component::in_phase(Standard::Fmi3, model, Phase::Step);
         component.assert_refused(component.enter_event_mode(), &["fmi3EnterEventMode: not offered"]);
     }
 }

@@ -12,8 +12,8 @@ use maglev_fmu::fmi::fmi2::types::{
 };
 use maglev_fmu::fmi::fmi2::*;
 use maglev_fmu::fmi::fmi3::*;
-use maglev_fmu::unit::variable::Kind;
-use maglev_fmu::unit::{Description, Edition, StartValues, UNITS, units};
+use maglev_fmu::model::variable::Kind;
+use maglev_fmu::model::{Description, Edition, StartValues, MODELS, models};
 
 use super::allocator::{blocks, with_memory_for};
 use super::harness::{BOTH, Component, ERROR, OK, Standard};
@@ -86,11 +86,11 @@ const WAYS: [Way; 6] = [
 ];
 
 impl Way {
-    fn is_open_to(self, unit: &Description) -> bool {
+    fn is_open_to(self, model: &Description) -> bool {
         match self {
             Self::CoSimulation2 | Self::CoSimulation3 { has_events: false } => true,
-            Self::ModelExchange2 | Self::ModelExchange3 => unit.offers_model_exchange(),
-            Self::Scheduled3 | Self::CoSimulation3 { has_events: true } => unit.is_sampled(),
+            Self::ModelExchange2 | Self::ModelExchange3 => model.offers_model_exchange(),
+            Self::Scheduled3 | Self::CoSimulation3 { has_events: true } => model.is_sampled(),
         }
     }
 
@@ -158,31 +158,31 @@ impl Way {
     }
 }
 
-/// The token of the unit in the edition that offers most, with start values or without.
-fn token(unit: &'static Description, has_start_values: bool) -> CString {
+/// The token of the model in the edition that offers most, with start values or without.
+fn token(model: &'static Description, has_start_values: bool) -> CString {
     let mut values = StartValues::default();
-    let rows = unit.variables.iter().filter(|row| has_start_values && !row.is_calculated());
+    let rows = model.variables.iter().filter(|row| has_start_values && !row.is_calculated());
     for row in rows.filter(|row| matches!(row.kind, Kind::Real(_))) {
-        values.set(unit, row.name, row.start).unwrap();
+        values.set(model, row.name, row.start).unwrap();
     }
-    CString::new(values.token(unit, Edition::Clocked)).unwrap()
+    CString::new(values.token(model, Edition::Clocked)).unwrap()
 }
 
-fn component(way: Way, unit: &'static Description, handle: *mut c_void) -> Component {
-    Component::from_handle(way.standard(), unit.name, handle, Box::default())
+fn component(way: Way, model: &'static Description, handle: *mut c_void) -> Component {
+    Component::from_handle(way.standard(), model.name, handle, Box::default())
 }
 
-/// Every unit, every way to it.
+/// Every model, every way to it.
 fn all_ways() -> impl Iterator<Item = (&'static Description, Way)> {
-    let units = units().map(|unit| unit.description);
-    units.flat_map(|unit| WAYS.into_iter().filter(|way| way.is_open_to(unit)).map(move |way| (unit, way)))
+    let models = models().map(|model| model.description);
+    models.flat_map(|model| WAYS.into_iter().filter(|way| way.is_open_to(model)).map(move |way| (model, way)))
 }
 
 #[test]
 fn every_allocation_of_instantiate_may_fail() {
-    for (unit, way) in all_ways() {
+    for (model, way) in all_ways() {
         for (has_start_values, logging_on) in [(false, false), (false, true), (true, false), (true, true)] {
-            let token = token(unit, has_start_values);
+            let token = token(model, has_start_values);
             let before = blocks();
             let mut failures = 0;
             let handle = loop {
@@ -191,23 +191,23 @@ fn every_allocation_of_instantiate_may_fail() {
                 if !handle.is_null() {
                     break handle;
                 }
-                assert_eq!(blocks(), before, "{} {way:?}: a leak at allocation {failures}", unit.name);
-                assert_says_out_of_memory(unit.name);
+                assert_eq!(blocks(), before, "{} {way:?}: a leak at allocation {failures}", model.name);
+                assert_says_out_of_memory(model.name);
                 failures += 1;
             };
-            assert!(failures >= 3, "{} {way:?}: {failures} allocations", unit.name);
-            let component = component(way, unit, handle);
+            assert!(failures >= 3, "{} {way:?}: {failures} allocations", model.name);
+            let component = component(way, model, handle);
             component.initialise(0.0);
             drop(component);
-            assert_eq!(blocks(), before, "{} {way:?}", unit.name);
+            assert_eq!(blocks(), before, "{} {way:?}", model.name);
         }
     }
 }
 
 #[test]
 fn tokens_are_refused_without_memory() {
-    let unit = UNITS[0].description;
-    let own = unit.token();
+    let model = MODELS[0].description;
+    let own = model.token();
     for tail in [";", ";k1=1.0", ";17=one", ";4711=0.0", ";0=1.0", ";1=NaN"] {
         let token = CString::new(format!("{}{tail}", own.as_str())).unwrap();
         for way in [Way::CoSimulation2, Way::CoSimulation3 { has_events: false }] {
@@ -222,8 +222,8 @@ fn tokens_are_refused_without_memory() {
 
 #[test]
 fn every_allocation_of_saved_states_may_fail() {
-    for (unit, way) in all_ways() {
-        let component = component(way, unit, way.instantiate(&token(unit, false), false));
+    for (model, way) in all_ways() {
+        let component = component(way, model, way.instantiate(&token(model, false), false));
         component.initialise(0.0);
         let values = component.snapshot();
         let bytes = component.saved_bytes();
@@ -240,7 +240,7 @@ fn every_allocation_of_saved_states_may_fail() {
             while with_memory_for(failures, || call(&mut state)) != OK {
                 assert!(state.is_null());
                 assert_eq!(blocks(), before);
-                assert_says_out_of_memory(unit.name);
+                assert_says_out_of_memory(model.name);
                 failures += 1;
             }
             assert!(failures > 0 && !state.is_null());
@@ -256,16 +256,16 @@ fn every_allocation_of_saved_states_may_fail() {
 
 #[test]
 fn nothing_else_needs_memory() {
-    for unit in units().map(|unit| unit.description) {
+    for model in models().map(|model| model.description) {
         for standard in BOTH {
             let way = match standard {
                 Standard::Fmi2 => Way::CoSimulation2,
                 Standard::Fmi3 => Way::CoSimulation3 { has_events: false },
             };
-            let component = component(way, unit, way.instantiate(&token(unit, true), true));
+            let component = component(way, model, way.instantiate(&token(model, true), true));
             let first_life = with_memory_for(0, || live(&component));
             assert_eq!(with_memory_for(0, || component.reset()), OK);
-            assert_eq!(with_memory_for(0, || live(&component)), first_life, "{} {standard:?}", unit.name);
+            assert_eq!(with_memory_for(0, || live(&component)), first_life, "{} {standard:?}", model.name);
         }
     }
 }

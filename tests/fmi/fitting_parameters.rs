@@ -26,8 +26,8 @@ fn equal_prefilters_end_no_initialisation() {
 
 #[test]
 fn a_sample_time_too_short_hides_nothing_until_it_is_refused() {
-    for (standard, unit) in plants() {
-        let component = Component::new(standard, unit);
+    for (standard, model) in plants() {
+        let component = Component::new(standard, model);
         assert_eq!(component.set("sensor.sample_time", 1e-12), OK);
         assert_eq!(component.enter_initialization(1e5, None), OK);
         assert_eq!(component.get("sensor.sample_time"), 1e-12);

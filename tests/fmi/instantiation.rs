@@ -12,15 +12,15 @@ use maglev_fmu::fmi::fmi3::{
     fmi3FreeInstance, fmi3GetVersion, fmi3InstantiateCoSimulation, fmi3InstantiateModelExchange,
     fmi3InstantiateScheduledExecution,
 };
-use maglev_fmu::unit::{Edition, editions};
+use maglev_fmu::model::{Edition, editions};
 
 use super::harness::{
     BOTH, CONTROLLER, Component, ERROR, PLANT, Recorder, Standard, all, fmi2_logger, fmi3_logger,
     instantiate_with,
 };
 
-fn token(unit: &str) -> CString {
-    super::harness::token(unit, Edition::Plain)
+fn token(model: &str) -> CString {
+    super::harness::token(model, Edition::Plain)
 }
 
 /// The one message about a failed instantiation.
@@ -68,9 +68,9 @@ fn a_wrong_token_is_answered_with_the_right_ones() {
                 };
                 let text = refusal(&recorder, handle);
                 assert!(text.contains(&format!("\"{}\"", wrong.to_str().unwrap_or(""))), "{text}");
-                for (unit, edition) in editions() {
-                    let token = edition.token(unit.description);
-                    let known = format!("{} for {}", token.as_str(), unit.description.name);
+                for (model, edition) in editions() {
+                    let token = edition.token(model.description);
+                    let known = format!("{} for {}", token.as_str(), model.description.name);
                     assert!(text.contains(&known), "{text}");
                 }
             }
@@ -80,8 +80,8 @@ fn a_wrong_token_is_answered_with_the_right_ones() {
 
 #[test]
 fn null_is_accepted_for_everything_but_the_token() {
-    for (standard, unit) in all() {
-        let token = token(unit);
+    for (standard, model) in all() {
+        let token = token(model);
         for (name, token, expected) in
             [(null(), token.as_ptr(), true), (c"x".as_ptr(), token.as_ptr(), true), (null(), null(), false)]
         {
@@ -90,7 +90,7 @@ fn null_is_accepted_for_everything_but_the_token() {
                 unsafe { instantiate_with(standard, name, token, null(), null_mut(), None, None, true) };
             assert_eq!(!handle.is_null(), expected);
             if expected {
-                let component = Component::from_handle(standard, unit, handle, Box::default());
+                let component = Component::from_handle(standard, model, handle, Box::default());
                 // A refusal has nobody to tell.
                 assert_eq!(component.step(0.0, -1.0), ERROR);
                 component.initialise(0.0);
@@ -125,8 +125,8 @@ fn a_null_name_reaches_the_logger_as_an_empty_one() {
 
 #[test]
 fn every_form_of_resource_path_is_accepted() {
-    for (standard, unit) in all() {
-        let token = token(unit);
+    for (standard, model) in all() {
+        let token = token(model);
         let recorder = Box::<Recorder>::default();
         for resources in [
             c"",
@@ -158,7 +158,7 @@ fn every_form_of_resource_path_is_accepted() {
                 )
             };
             assert!(!handle.is_null(), "{standard:?} {resources:?}");
-            drop(Component::from_handle(standard, unit, handle, Box::default()));
+            drop(Component::from_handle(standard, model, handle, Box::default()));
         }
         assert!(recorder.take().is_empty());
     }
@@ -166,7 +166,7 @@ fn every_form_of_resource_path_is_accepted() {
 
 #[test]
 fn interfaces_that_are_not_offered_are_refused() {
-    // A sampled unit cannot be integrated.
+    // A sampled model cannot be integrated.
     let (recorder, token) = (Recorder::default(), token(CONTROLLER));
     let (environment, token) = (recorder.environment(), token.as_ptr());
     let name: *const c_char = c"x".as_ptr();

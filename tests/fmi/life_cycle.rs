@@ -2,7 +2,7 @@
 
 use core::ffi::c_void;
 
-use maglev_fmu::unit::variable::{Causality, Kind};
+use maglev_fmu::model::variable::{Causality, Kind};
 
 use super::harness::{Component, DISCARD, ERROR, OK, PHASES, Standard, all};
 use super::{allowed_calls_fmi2, allowed_calls_fmi3};
@@ -40,15 +40,15 @@ fn table(standard: Standard) -> Vec<Row> {
 #[test]
 fn calls_are_refused_exactly_where_the_standards_forbid_them() {
     let mut refused = 0;
-    for (standard, unit) in all() {
+    for (standard, model) in all() {
         for row in table(standard) {
             for (phase, mark) in PHASES.into_iter().zip(row.allowed.chars()) {
-                let component = Component::in_phase(standard, unit, phase);
+                let component = Component::in_phase(standard, model, phase);
                 let before = component.snapshot();
                 // SAFETY: a live handle, valid arguments.
                 let status = unsafe { (row.call)(component.handle) };
                 let messages = component.recorder.take();
-                let context = format!("{unit}: {} in {}: {messages:?}", row.name, phase.name());
+                let context = format!("{model}: {} in {}: {messages:?}", row.name, phase.name());
                 let text = messages.last().map_or("", |message| &message.text);
                 match (mark, row.outcome) {
                     ('x', Outcome::PlantsOnly) if component.description.offers_model_exchange() => {
@@ -103,8 +103,8 @@ fn every_function_refuses_a_null_handle() {
 
 #[test]
 fn a_reset_instance_repeats_its_life_bit_for_bit() {
-    for (standard, unit) in all() {
-        let fresh = Component::in_phase(standard, unit, PHASES[3]);
+    for (standard, model) in all() {
+        let fresh = Component::in_phase(standard, model, PHASES[3]);
         let first = |causality: Causality| {
             let mut rows = (0..).zip(fresh.description.variables);
             rows.find(|(_, row)| row.causality == causality && matches!(row.kind, Kind::Real(_))).unwrap()
@@ -112,7 +112,7 @@ fn a_reset_instance_repeats_its_life_bit_for_bit() {
         let ((input, _), (parameter, row)) = (first(Causality::Input), first(Causality::Parameter));
         let other = if row.start == 0.0 { 1e-3 } else { 0.9 * row.start };
         for phase in PHASES {
-            let used = Component::in_phase(standard, unit, phase);
+            let used = Component::in_phase(standard, model, phase);
             // What was set is forgotten, too.
             used.set_reference(parameter, other);
             assert_eq!(used.reset(), OK);
@@ -121,7 +121,7 @@ fn a_reset_instance_repeats_its_life_bit_for_bit() {
                 assert_eq!(used.set_reference(input, 1e-3 * f64::from(k)), OK);
                 assert_eq!(used.step(f64::from(k) * 1e-3, 1e-3), OK);
             }
-            assert_eq!(used.snapshot(), fresh.snapshot(), "{standard:?} {unit} {phase:?}");
+            assert_eq!(used.snapshot(), fresh.snapshot(), "{standard:?} {model} {phase:?}");
         }
     }
 }

@@ -75,8 +75,8 @@ fn categories_are_switched_one_by_one() {
 
 #[test]
 fn unknown_categories_change_nothing_and_are_answered_with_the_list() {
-    for (standard, unit) in all() {
-        let component = Component::with_logging(standard, unit, false);
+    for (standard, model) in all() {
+        let component = Component::with_logging(standard, model, false);
         let status = set_logging(&component, true, &[c"logEvents", c"logEverything"]);
         component.assert_refused(status, &["SetDebugLogging", "\"logEverything\""]);
         let status = set_logging(&component, true, &[c""]);

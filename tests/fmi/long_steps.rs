@@ -2,9 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use maglev_fmu::unit::units;
+use maglev_fmu::model::models;
 
-use super::harness::clocked::{Choices, go_on, sampled_units};
+use super::harness::clocked::{Choices, go_on, sampled_models};
 use super::harness::{BOTH, Component, OK};
 
 /// The longest step that a refusal names.
@@ -29,7 +29,7 @@ impl Component {
     }
 }
 
-/// Units with parameters, by name, that make their steps expensive.
+/// Models with parameters, by name, that make their steps expensive.
 const EXPENSIVE: &[(&str, &[(&str, f64)])] = &[
     (
         "LevitatedBallPlant",
@@ -77,38 +77,38 @@ const EXPENSIVE: &[(&str, &[(&str, f64)])] = &[
 #[test]
 fn a_step_that_would_take_long_is_refused_at_once_with_what_is_accepted() {
     for standard in BOTH {
-        for (unit, parameters) in EXPENSIVE {
-            let component = Component::new(standard, unit);
+        for (model, parameters) in EXPENSIVE {
+            let component = Component::new(standard, model);
             for (name, value) in *parameters {
-                assert_eq!(component.set(name, *value), OK, "{unit} {name}");
+                assert_eq!(component.set(name, *value), OK, "{model} {name}");
             }
             component.initialise(0.0);
             component.recorder.clear();
             let begin = Instant::now();
             let limit = named_limit(&component, 1e12);
             // The limit itself is not refused, what is beyond is.
-            assert_eq!(named_limit(&component, limit * 1.5), limit, "{unit}");
-            assert!(begin.elapsed() < Duration::from_millis(100), "{unit}: {:?}", begin.elapsed());
+            assert_eq!(named_limit(&component, limit * 1.5), limit, "{model}");
+            assert!(begin.elapsed() < Duration::from_millis(100), "{model}: {:?}", begin.elapsed());
             // A share of it, since the machine may do something else.
             let begin = Instant::now();
-            assert_eq!(component.step(0.0, limit * 0.02), OK, "{unit}");
+            assert_eq!(component.step(0.0, limit * 0.02), OK, "{model}");
             let whole = begin.elapsed().as_secs_f64() / 0.02;
             component.recorder.clear();
-            println!("{unit} {parameters:?}: {whole:.2} s for {limit} s");
-            assert!(whole < 10.0, "{unit} {parameters:?}: {whole} s for {limit} s");
+            println!("{model} {parameters:?}: {whole:.2} s for {limit} s");
+            assert!(whole < 10.0, "{model} {parameters:?}: {whole} s for {limit} s");
         }
     }
 }
 
-/// Guards: a declared range in which the unit cannot be run, for the coil is faster than any integrator.
+/// Guards: a declared range in which the model cannot be run, for the coil is faster than any integrator.
 #[test]
 fn everywhere_in_its_ranges_a_plant_takes_a_step_of_a_microsecond() {
-    let unit = "LevitatedBallPlant";
+    let model = "LevitatedBallPlant";
     let names = ["resistance", "inductance_constant", "gap", "lower_stop"];
     for (standard, corner) in
         BOTH.into_iter().flat_map(|standard| (0..16u32).map(move |corner| (standard, corner)))
     {
-        let component = Component::new(standard, unit);
+        let component = Component::new(standard, model);
         for (place, name) in names.into_iter().enumerate() {
             let (minimum, maximum) = component.description.find(name).unwrap().1.range;
             assert_eq!(component.set(name, if corner >> place & 1 == 0 { minimum } else { maximum }), OK);
@@ -120,9 +120,9 @@ fn everywhere_in_its_ranges_a_plant_takes_a_step_of_a_microsecond() {
 }
 
 #[test]
-fn every_unit_has_a_bound_and_the_suggested_step_is_far_below() {
-    for unit in units() {
-        let description = unit.description;
+fn every_model_has_a_bound_and_the_suggested_step_is_far_below() {
+    for model in models() {
+        let description = model.description;
         let component = Component::new(BOTH[0], description.name);
         component.initialise(0.0);
         component.recorder.clear();
@@ -138,15 +138,15 @@ fn every_unit_has_a_bound_and_the_suggested_step_is_far_below() {
 
 #[test]
 fn a_step_that_ends_at_the_next_tick_may_be_as_long_as_it_likes() {
-    for unit in sampled_units() {
+    for model in sampled_models() {
         let choices = Choices { event_mode: true, early_return: true, intermediate_update: None };
-        let component = Component::co_simulation(unit, choices);
+        let component = Component::co_simulation(model, choices);
         component.initialise(0.0);
         assert_eq!(component.enter_step_mode(), OK);
         let step = component.step_to_event(0.0, 1e12);
         assert_eq!((step.status, step.reached), (OK, component.get("sample_time")));
         let choices = Choices { event_mode: true, early_return: false, intermediate_update: None };
-        let component = Component::co_simulation(unit, choices);
+        let component = Component::co_simulation(model, choices);
         component.initialise(0.0);
         assert_eq!(component.enter_step_mode(), OK);
         assert_ne!(component.step_to_event(0.0, 1e12).status, OK);
@@ -156,17 +156,17 @@ fn a_step_that_ends_at_the_next_tick_may_be_as_long_as_it_likes() {
 
 #[test]
 fn steps_beyond_longest_step_are_refused_with_callbacks_and_without() {
-    for unit in sampled_units() {
+    for model in sampled_models() {
         for intermediate_update in [None, Some(go_on as _)] {
             let component =
-                Component::co_simulation(unit, Choices { intermediate_update, ..Choices::default() });
+                Component::co_simulation(model, Choices { intermediate_update, ..Choices::default() });
             assert_eq!(component.set("longest_step", 1e-3), OK);
             component.initialise(0.0);
             component.recorder.clear();
             let said = ["a step of 0.002 s: expected at most longest_step = 0.001 s"];
             component.assert_refused(component.step(0.0, 2e-3), &said);
             assert_eq!(component.get("time"), 0.0);
-            assert_eq!(component.step(0.0, 1e-3), OK, "{unit}");
+            assert_eq!(component.step(0.0, 1e-3), OK, "{model}");
         }
     }
 }
@@ -174,9 +174,9 @@ fn steps_beyond_longest_step_are_refused_with_callbacks_and_without() {
 /// Guards: a step up to a tick that was longer than `longest_step`, where the importer had asked for even more.
 #[test]
 fn longest_step_holds_for_the_part_of_a_step_up_to_a_tick() {
-    for unit in sampled_units() {
+    for model in sampled_models() {
         let choices = Choices { event_mode: true, early_return: true, intermediate_update: None };
-        let component = Component::co_simulation(unit, choices);
+        let component = Component::co_simulation(model, choices);
         let sample_time = component.get("sample_time");
         assert_eq!(component.set("longest_step", sample_time / 2.0), OK);
         component.initialise(0.0);
@@ -186,28 +186,28 @@ fn longest_step_holds_for_the_part_of_a_step_up_to_a_tick() {
         let said = format!("a step of {sample_time:?} s: expected at most longest_step = {limit:?} s");
         component.assert_refused_keeping(component.step_to_event(0.0, 1e12).status, &[&said]);
         let step = component.step_to_event(0.0, limit);
-        assert_eq!((step.status, step.is_event, step.reached), (OK, false, limit), "{unit}");
+        assert_eq!((step.status, step.is_event, step.reached), (OK, false, limit), "{model}");
         let step = component.step_to_event(limit, 1e12);
-        assert_eq!((step.status, step.is_event, step.reached), (OK, true, sample_time), "{unit}");
+        assert_eq!((step.status, step.is_event, step.reached), (OK, true, sample_time), "{model}");
     }
 }
 
 /// Guards: a limit of computing that was named where the loop's own is smaller, so that the step named was refused.
 #[test]
 fn the_smaller_of_two_limits_is_named_and_accepted() {
-    for (standard, unit) in
-        BOTH.into_iter().flat_map(|standard| sampled_units().map(move |unit| (standard, unit)))
+    for (standard, model) in
+        BOTH.into_iter().flat_map(|standard| sampled_models().map(move |model| (standard, model)))
     {
         for (longest_step, named) in
             [(1e-3, "at most longest_step = 0.001 s"), (1e9, "about a second of computing")]
         {
-            let component = Component::new(standard, unit);
+            let component = Component::new(standard, model);
             assert_eq!(component.set("longest_step", longest_step), OK);
             component.initialise(0.0);
             component.recorder.clear();
             component.assert_refused(component.step(0.0, 1e30), &[named]);
         }
-        let component = Component::new(standard, unit);
+        let component = Component::new(standard, model);
         assert_eq!(component.set("longest_step", 1e-3), OK);
         component.initialise(0.0);
         assert_eq!(component.step(0.0, 1e-3), OK);
@@ -220,34 +220,34 @@ const LATE_STARTS: [f64; 4] = [1677.0, 33_554.0, 50_000.0, 1e6];
 /// Guards: `longest_step`, which refused what it names to importers that compute their steps as differences of times.
 #[test]
 fn longest_step_allows_for_the_rounding_of_times() {
-    for (standard, unit) in
-        BOTH.into_iter().flat_map(|standard| sampled_units().map(move |unit| (standard, unit)))
+    for (standard, model) in
+        BOTH.into_iter().flat_map(|standard| sampled_models().map(move |model| (standard, model)))
     {
         for (start, longest_step) in LATE_STARTS.into_iter().flat_map(|start| [(start, 1e-3), (-start, 1e-4)])
         {
-            let component = Component::new(standard, unit);
+            let component = Component::new(standard, model);
             assert_eq!(component.set("longest_step", longest_step), OK);
             component.initialise(start);
             let mut time = start;
             for k in 1..=100 {
                 let end = start + f64::from(k) * longest_step;
                 let status = component.step(time, end - time);
-                assert!(status == OK, "{unit} {start}: {:?}", component.recorder.messages());
+                assert!(status == OK, "{model} {start}: {:?}", component.recorder.messages());
                 time = end;
             }
         }
     }
 }
 
-/// Guards: a unit that ended a step at its own tick and refused what it had made of it.
+/// Guards: a model that ended a step at its own tick and refused what it had made of it.
 #[test]
 fn steps_that_end_at_ticks_are_one_sample_time_long_at_any_time() {
-    for unit in sampled_units() {
+    for model in sampled_models() {
         for (start, sample_time) in
             LATE_STARTS.map(|start| (start, 1e-3)).into_iter().chain([(8.3, 1e-6), (1677.0, 1e-4)])
         {
             let choices = Choices { event_mode: true, early_return: true, intermediate_update: None };
-            let component = Component::co_simulation(unit, choices);
+            let component = Component::co_simulation(model, choices);
             assert_eq!(component.set("sample_time", sample_time), OK);
             assert_eq!(component.set("longest_step", sample_time), OK);
             component.initialise(start);
@@ -258,7 +258,7 @@ fn steps_that_end_at_ticks_are_one_sample_time_long_at_any_time() {
                 let step = component.step_to_event(time, 1.0);
                 assert!(
                     step.status == OK && step.is_event,
-                    "{unit} {start}: {:?}",
+                    "{model} {start}: {:?}",
                     component.recorder.messages()
                 );
                 time = step.reached;

@@ -1,6 +1,6 @@
 //! The C boundary from outside: the exported functions of both standards, called as an importer calls them.
 
-// Adds units that the library does not have.
+// Adds models that the library does not have.
 use maglev_fmu_test as _;
 
 mod allocations;

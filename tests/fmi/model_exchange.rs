@@ -1,7 +1,7 @@
 //! Model exchange: an importer that integrates the plants gets what they compute themselves, discrete values change
 //! at events only, and calls are refused where the standards forbid them.
 
-use maglev_fmu::unit::variable::{Causality, Kind, Variability};
+use maglev_fmu::model::variable::{Causality, Kind, Variability};
 
 use super::harness::{CONTROLLER, Component, DISCARD, ERROR, OK, Standard, plants};
 
@@ -34,9 +34,9 @@ fn excite(component: &Component) {
 
 #[test]
 fn an_importer_that_integrates_gets_the_result_of_co_simulation() {
-    for (standard, unit) in plants() {
+    for (standard, model) in plants() {
         let (solved, stepped) =
-            (Component::in_continuous_time(standard, unit), Component::new(standard, unit));
+            (Component::in_continuous_time(standard, model), Component::new(standard, model));
         stepped.initialise(0.0);
         excite(&solved);
         excite(&stepped);
@@ -49,15 +49,15 @@ fn an_importer_that_integrates_gets_the_result_of_co_simulation() {
         for ((state, _), nominal) in solved.description.continuous_states().zip(nominals) {
             let name = solved.description.variables[state].name;
             let (one, other) = (solved.get(name), stepped.get(name));
-            assert!((one - other).abs() < 1e-9 * nominal.max(other.abs()), "{unit} {name}: {one} {other}");
+            assert!((one - other).abs() < 1e-9 * nominal.max(other.abs()), "{model} {name}: {one} {other}");
         }
     }
 }
 
 #[test]
 fn rows_and_vectors_tell_the_same() {
-    for (standard, unit) in plants() {
-        let component = Component::in_continuous_time(standard, unit);
+    for (standard, model) in plants() {
+        let component = Component::in_continuous_time(standard, model);
         excite(&component);
         runge_kutta(&component, 0.0, 1e-3);
         let value = |row: usize| component.get(component.description.variables[row].name);
@@ -78,8 +78,8 @@ fn rows_and_vectors_tell_the_same() {
 
 #[test]
 fn discrete_outputs_change_at_events_only() {
-    for (standard, unit) in plants() {
-        let component = Component::in_continuous_time(standard, unit);
+    for (standard, model) in plants() {
+        let component = Component::in_continuous_time(standard, model);
         let discrete: Vec<u32> = (0..component.description.variables.len() as u32)
             .filter(|reference| component.variable(*reference).variability == Variability::Discrete)
             .collect();
@@ -87,7 +87,7 @@ fn discrete_outputs_change_at_events_only() {
         let before = read();
         excite(&component);
         runge_kutta(&component, 0.0, 1e-3);
-        assert_eq!(read(), before, "{unit}");
+        assert_eq!(read(), before, "{model}");
         // The voltage that acts is no discrete value: it does so at once.
         assert_eq!(component.get("voltage_measured"), component.get("voltage"));
         let Some((_, stop)) = component.description.find("initial.position") else { unreachable!() };
@@ -95,10 +95,10 @@ fn discrete_outputs_change_at_events_only() {
             let mut states = component.states();
             (states[0], states[1]) = (stop.range.0, 0.0);
             assert_eq!(component.set_states(&states), OK);
-            assert_eq!(read(), before, "{unit}");
+            assert_eq!(read(), before, "{model}");
             assert_eq!(component.enter_event_mode(), OK);
             assert!(component.update_discrete_states());
-            assert_ne!(read(), before, "{unit}");
+            assert_ne!(read(), before, "{model}");
         }
     }
 }
@@ -125,8 +125,8 @@ fn the_bearings_flux_announces_its_sign() {
 
 #[test]
 fn states_that_make_no_sense_are_discarded() {
-    for (standard, unit) in plants() {
-        let component = Component::in_continuous_time(standard, unit);
+    for (standard, model) in plants() {
+        let component = Component::in_continuous_time(standard, model);
         let before = component.snapshot();
         let mut states = component.states();
         states[1] = f64::NAN;
@@ -144,15 +144,15 @@ fn states_that_make_no_sense_are_discarded() {
 
 #[test]
 fn what_may_be_set_depends_on_the_phase() {
-    for (standard, unit) in plants() {
-        let component = Component::in_continuous_time(standard, unit);
+    for (standard, model) in plants() {
+        let component = Component::in_continuous_time(standard, model);
         assert_eq!(component.set("voltage", 1.0), OK);
         // Both standards let continuous states be set by their references, too.
         assert_eq!(component.set("velocity", 0.125), OK);
         assert_eq!(component.states()[1], 0.125);
         let said = "sensor.noise is a parameter and cannot be set in the phase \"continuous-time mode\"";
         component.assert_refused(component.set("sensor.noise", 1e-3), &[said]);
-        component.assert_refused(component.set("voltage_measured", 0.0), &["calculated by the unit"]);
+        component.assert_refused(component.set("voltage_measured", 0.0), &["calculated by the model"]);
         assert_eq!(component.enter_event_mode(), OK);
         assert_eq!(component.set("sensor.noise", 1e-3), OK);
         assert_eq!(component.set("voltage", 2.0), OK);
@@ -182,10 +182,10 @@ unsafe extern "C-unwind" fn enter3(handle: *mut core::ffi::c_void) -> i32 {
 }
 
 /// An instance in the phase with the given place in the rules.
-fn in_phase(standard: Standard, unit: &str, phase: usize) -> Component {
+fn in_phase(standard: Standard, model: &str, phase: usize) -> Component {
     let component = match phase {
-        3 => Component::in_continuous_time(standard, unit),
-        _ => Component::exchanged(standard, unit),
+        3 => Component::in_continuous_time(standard, model),
+        _ => Component::exchanged(standard, model),
     };
     if phase == 1 {
         assert_eq!(component.enter_initialization(0.0, None), OK);
@@ -202,15 +202,15 @@ fn in_phase(standard: Standard, unit: &str, phase: usize) -> Component {
 
 #[test]
 fn calls_are_refused_exactly_where_model_exchange_forbids_them() {
-    for (standard, unit) in plants() {
+    for (standard, model) in plants() {
         for (name, allowed, call) in RULES {
             for (phase, mark) in allowed.chars().enumerate() {
-                let component = in_phase(standard, unit, phase);
+                let component = in_phase(standard, model, phase);
                 // FMI 2.0 lets event mode be entered again from itself.
                 let again = standard == Standard::Fmi2 && *name == "EnterEventMode" && phase == 2;
                 let expected = if mark == 'x' || again { OK } else { ERROR };
                 let status = call(&component);
-                assert_eq!(status, expected, "{standard:?} {unit} {name} in phase {phase}");
+                assert_eq!(status, expected, "{standard:?} {model} {name} in phase {phase}");
                 assert_eq!(
                     component.recorder.messages().iter().filter(|m| m.status == ERROR).count(),
                     usize::from(expected == ERROR)
@@ -219,7 +219,7 @@ fn calls_are_refused_exactly_where_model_exchange_forbids_them() {
         }
         // Vectors can be had once there is something to compute them from.
         for phase in 1..5 {
-            let component = in_phase(standard, unit, phase);
+            let component = in_phase(standard, model, phase);
             assert_eq!(component.states().len(), component.derivatives().len());
             component.event_indicators();
             component.nominals();
@@ -229,9 +229,9 @@ fn calls_are_refused_exactly_where_model_exchange_forbids_them() {
 
 #[test]
 fn a_reset_instance_starts_anew() {
-    for (standard, unit) in plants() {
-        let fresh = Component::in_continuous_time(standard, unit);
-        let used = Component::in_continuous_time(standard, unit);
+    for (standard, model) in plants() {
+        let fresh = Component::in_continuous_time(standard, model);
+        let used = Component::in_continuous_time(standard, model);
         excite(&used);
         runge_kutta(&used, 0.0, 1e-3);
         assert_eq!(used.reset(), OK);
@@ -247,8 +247,8 @@ fn a_reset_instance_starts_anew() {
 
 #[test]
 fn functions_of_the_other_interface_are_refused() {
-    for (standard, unit) in plants() {
-        let stepped = Component::in_phase(standard, unit, super::harness::Phase::Initialization);
+    for (standard, model) in plants() {
+        let stepped = Component::in_phase(standard, model, super::harness::Phase::Initialization);
         let mut room = [0.0; 8];
         // SAFETY: a live handle and room.
         let status = unsafe {
@@ -267,13 +267,13 @@ fn functions_of_the_other_interface_are_refused() {
     }
     let controller = Component::in_phase(Standard::Fmi3, CONTROLLER, super::harness::Phase::Step);
     let status = controller.directional(&[], &[], &[], &mut []);
-    controller.assert_refused(status, &["not offered by this unit: its outputs are held between ticks"]);
+    controller.assert_refused(status, &["not offered by this model: its outputs are held between ticks"]);
 }
 
 #[test]
 fn status_functions_of_fmi2_are_those_of_co_simulation() {
-    let (_, unit) = plants().next().unwrap();
-    let component = Component::in_continuous_time(Standard::Fmi2, unit);
+    let (_, model) = plants().next().unwrap();
+    let component = Component::in_continuous_time(Standard::Fmi2, model);
     let mut time = 0.0;
     for terminates in [false, true] {
         if terminates {
@@ -293,8 +293,8 @@ fn status_functions_of_fmi2_are_those_of_co_simulation() {
 /// FMI 2.0.5, table in section 3.2.3, conditions 4 and 5; FMI 3.0.2, section 2.3.5.
 #[test]
 fn a_state_that_does_not_jump_is_set_at_an_event_by_fmi3_only() {
-    for (standard, unit) in plants() {
-        let component = Component::in_continuous_time(standard, unit);
+    for (standard, model) in plants() {
+        let component = Component::in_continuous_time(standard, model);
         let states = component.description.continuous_states().map(|(state, _)| state);
         for state in states.map(|state| &component.description.variables[state]) {
             assert_eq!(component.set(state.name, 1e-3), OK, "in continuous time");

@@ -1,7 +1,7 @@
-//! A defect inside a unit stays inside the instance.
+//! A defect inside a model stays inside the instance.
 
 use maglev_fmu::fmi::{Callback, Instance, Interface, Logger};
-use maglev_fmu::unit::{Description, Journal, MagneticBearingPlant, Unit, UnitError};
+use maglev_fmu::model::{Description, Journal, MagneticBearingPlant, Model, ModelError};
 use serde::{Deserialize, Serialize};
 
 use super::harness::{
@@ -15,7 +15,7 @@ struct Defective {
     steps: u32,
 }
 
-impl Unit for Defective {
+impl Model for Defective {
     fn description(&self) -> &'static Description {
         self.plant.description()
     }
@@ -26,14 +26,14 @@ impl Unit for Defective {
         self.plant.values_mut()
     }
     fn adopt_parameters(&mut self) {}
-    fn initialise(&mut self, start_time: f64) -> Result<(), UnitError> {
+    fn initialise(&mut self, start_time: f64) -> Result<(), ModelError> {
         self.plant.initialise(start_time)
     }
-    fn check_step(&self, _: f64) -> Result<(), UnitError> {
+    fn check_step(&self, _: f64) -> Result<(), ModelError> {
         Ok(())
     }
 
-    fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), UnitError> {
+    fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), ModelError> {
         self.steps += 1;
         assert!(self.steps < 3, "deliberate");
         self.plant.advance(duration, journal)
@@ -48,8 +48,8 @@ fn defective(standard: Standard, logging_on: bool) -> Component {
         Standard::Fmi3 => Callback::Fmi3(fmi3_logger, recorder.environment()),
     };
     let logger = Logger::new(callback, c"defective", logging_on).unwrap();
-    let unit = Box::new(Defective { plant: MagneticBearingPlant::new(), steps: 0 });
-    let instance = Instance::new(unit, Interface::CoSimulation, logger).unwrap();
+    let model = Box::new(Defective { plant: MagneticBearingPlant::new(), steps: 0 });
+    let instance = Instance::new(model, Interface::CoSimulation, logger).unwrap();
     let handle = Box::into_raw(Box::new(instance)).cast();
     Component::from_handle(standard, PLANT, handle, recorder)
 }

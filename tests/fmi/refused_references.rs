@@ -4,9 +4,9 @@ use core::ptr::{null, null_mut};
 
 use maglev_fmu::fmi::fmi2::*;
 use maglev_fmu::fmi::fmi3::*;
-use maglev_fmu::unit::variable::Kind;
+use maglev_fmu::model::variable::Kind;
 
-use super::harness::clocked::{Choices, sampled_units};
+use super::harness::clocked::{Choices, sampled_models};
 use super::harness::{Component, ERROR, OK, PLANT, Phase, Standard, all};
 use super::refused_values::OPEN;
 
@@ -79,9 +79,9 @@ fn accessors(standard: Standard) -> Vec<Accessors> {
 
 #[test]
 fn wrong_types_are_named() {
-    for (standard, unit) in all() {
+    for (standard, model) in all() {
         for phase in OPEN {
-            let component = Component::in_phase(standard, unit, phase);
+            let component = Component::in_phase(standard, model, phase);
             let before = component.snapshot();
             for (reference, variable) in (0..).zip(component.description.variables) {
                 let mut carriers = 0;
@@ -109,10 +109,10 @@ fn wrong_types_are_named() {
 
 #[test]
 fn unknown_references_are_answered_with_the_largest() {
-    let plain = all().map(|(standard, unit)| (Component::in_phase(standard, unit, Phase::Step), 0));
+    let plain = all().map(|(standard, model)| (Component::in_phase(standard, model, Phase::Step), 0));
     // An importer that has read of the clocks is told of them, too.
-    let clocked = sampled_units().map(|unit| {
-        let component = Component::co_simulation(unit, Choices::default());
+    let clocked = sampled_models().map(|model| {
+        let component = Component::co_simulation(model, Choices::default());
         component.initialise(0.0);
         component.recorder.clear();
         let clocks = component.description.clocks().count();

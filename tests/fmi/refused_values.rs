@@ -1,7 +1,7 @@
 //! Values that are refused, and that a refused call changes nothing.
 
 use maglev_fmu::fmi::fmi3::fmi3SetInt64;
-use maglev_fmu::unit::variable::{Causality, Kind, Variable};
+use maglev_fmu::model::variable::{Causality, Kind, Variable};
 
 use super::harness::{BOTH, CONTROLLER, Component, ERROR, OK, PLANT, Phase, Standard, all, bearing};
 use super::values::other_value;
@@ -10,7 +10,7 @@ use super::values::other_value;
 pub const OPEN: [Phase; 2] = [Phase::Initialization, Phase::Step];
 
 fn may_be_set(variable: &Variable, phase: Phase) -> bool {
-    use maglev_fmu::unit::variable::Variability;
+    use maglev_fmu::model::variable::Variability;
     match variable.causality {
         Causality::Input => true,
         Causality::Parameter => phase != Phase::Step || variable.variability == Variability::Tunable,
@@ -21,9 +21,9 @@ fn may_be_set(variable: &Variable, phase: Phase) -> bool {
 #[test]
 fn non_finite_reals_are_refused_everywhere() {
     let mut tried = 0;
-    for (standard, unit) in all() {
+    for (standard, model) in all() {
         for phase in OPEN {
-            let component = Component::in_phase(standard, unit, phase);
+            let component = Component::in_phase(standard, model, phase);
             let before = component.snapshot();
             for (reference, variable) in (0..).zip(component.description.variables) {
                 if !matches!(variable.kind, Kind::Real(_)) || !may_be_set(variable, phase) {
@@ -53,9 +53,9 @@ fn shown(value: f64) -> String {
 #[test]
 fn values_out_of_range_are_refused_with_the_range() {
     let mut tried = 0;
-    for (standard, unit) in all() {
+    for (standard, model) in all() {
         for phase in OPEN {
-            let component = Component::in_phase(standard, unit, phase);
+            let component = Component::in_phase(standard, model, phase);
             let before = component.snapshot();
             for (reference, variable) in (0..).zip(component.description.variables) {
                 if !may_be_set(variable, phase) {
@@ -109,10 +109,10 @@ fn enumeration_numbers_of_64_bits_do_not_wrap() {
 
 #[test]
 fn a_refused_call_sets_nothing_at_all() {
-    for (standard, unit) in bearing() {
+    for (standard, model) in bearing() {
         for phase in OPEN {
-            let component = Component::in_phase(standard, unit, phase);
-            let twin = Component::in_phase(standard, unit, phase);
+            let component = Component::in_phase(standard, model, phase);
+            let twin = Component::in_phase(standard, model, phase);
             let settable: Vec<(u32, f64)> = (0..)
                 .zip(component.description.variables)
                 .filter(|(_, variable)| matches!(variable.kind, Kind::Real(_)) && may_be_set(variable, phase))

@@ -2,8 +2,8 @@
 //! can be computed, an instance takes its own state.
 
 use maglev_fmu::fmi::fmi2::fmi2SetRealInputDerivatives;
-use maglev_fmu::unit::units;
-use maglev_fmu::unit::variable::{Causality, Kind, Variability, Variable};
+use maglev_fmu::model::models;
+use maglev_fmu::model::variable::{Causality, Kind, Variability, Variable};
 use proptest::prelude::*;
 use proptest::sample::select;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
@@ -128,12 +128,12 @@ fn round_trip(component: &Component, context: &dyn core::fmt::Debug) -> Result<(
 
 #[test]
 fn every_state_that_is_reached_is_taken_back() {
-    for unit in units().map(|unit| unit.description) {
+    for model in models().map(|model| model.description) {
         let makes = BOTH.into_iter().flat_map(|standard| {
-            let stepped = move || Component::with_logging(standard, unit.name, true);
-            let exchanged = move || Component::exchanged(standard, unit.name);
+            let stepped = move || Component::with_logging(standard, model.name, true);
+            let exchanged = move || Component::exchanged(standard, model.name);
             let mut makes: Vec<Box<dyn Fn() -> Component>> = vec![Box::new(stepped)];
-            if unit.offers_model_exchange() {
+            if model.offers_model_exchange() {
                 makes.push(Box::new(exchanged));
             }
             makes
@@ -167,9 +167,9 @@ fn every_state_that_is_reached_is_taken_back() {
 
 #[test]
 fn a_force_that_would_leave_its_range_is_refused_at_the_step() {
-    for unit in units().map(|unit| unit.description).filter(|unit| unit.offers_model_exchange()) {
-        for row in unit.variables.iter().filter(|row| row.causality == Causality::Input) {
-            let component = Component::new(Standard::Fmi2, unit.name);
+    for model in models().map(|model| model.description).filter(|model| model.offers_model_exchange()) {
+        for row in model.variables.iter().filter(|row| row.causality == Causality::Input) {
+            let component = Component::new(Standard::Fmi2, model.name);
             component.initialise(0.0);
             component.recorder.clear();
             let largest = row.range.1.min(f64::MAX);

@@ -4,8 +4,8 @@ use core::ptr::null_mut;
 use std::ops::Range;
 
 use maglev_fmu::fmi::LONGEST_SAVED_STATE;
-use maglev_fmu::unit::units;
-use maglev_fmu::unit::variable::{Causality, Kind, Variability, Variable};
+use maglev_fmu::model::models;
+use maglev_fmu::model::variable::{Causality, Kind, Variability, Variable};
 use rand_core::Rng;
 use rand_pcg::Pcg32;
 
@@ -49,7 +49,7 @@ impl Choice {
 }
 
 fn names() -> impl Iterator<Item = &'static str> {
-    units().map(|unit| unit.description.name)
+    models().map(|model| model.description.name)
 }
 
 fn is_input(variable: &Variable) -> bool {
@@ -68,8 +68,8 @@ enum Move {
 }
 
 /// A random configuration, and moves after initialisation.
-fn plan(unit: &str, choice: &mut Choice) -> (Vec<(u32, f64)>, Vec<Move>) {
-    let variables = super::harness::description(unit).variables;
+fn plan(model: &str, choice: &mut Choice) -> (Vec<(u32, f64)>, Vec<Move>) {
+    let variables = super::harness::description(model).variables;
     let rows = |wanted: fn(&Variable) -> bool| -> Vec<u32> {
         (0..variables.len()).filter(|row| wanted(&variables[*row])).map(|row| row as u32).collect()
     };
@@ -113,8 +113,8 @@ fn go(component: &Component, time: &mut f64, to_do: &Move) -> i32 {
     }
 }
 
-fn configured(standard: Standard, unit: &str, configuration: &[(u32, f64)]) -> Component {
-    let component = Component::with_logging(standard, unit, false);
+fn configured(standard: Standard, model: &str, configuration: &[(u32, f64)]) -> Component {
+    let component = Component::with_logging(standard, model, false);
     for (row, value) in configuration {
         assert_eq!(component.set_reference(*row, *value), OK, "{:?}", component.recorder.messages());
     }
@@ -125,29 +125,29 @@ fn configured(standard: Standard, unit: &str, configuration: &[(u32, f64)]) -> C
 /// standard, before and after initialisation, with detours between the two.
 #[test]
 fn ten_thousand_interrupted_runs_never_differ_from_the_uninterrupted_ones() {
-    let sequences = 10_000 / units().count() as u64 + 1;
+    let sequences = 10_000 / models().count() as u64 + 1;
     let (mut restored, mut steps, mut longest) = (0, 0, 0);
-    for unit in names() {
+    for model in names() {
         for sequence in 0..sequences {
             let mut choice = Choice::new(sequence);
-            let (configuration, moves) = plan(unit, &mut choice);
+            let (configuration, moves) = plan(model, &mut choice);
             let standard = BOTH[choice.below(2) as usize];
-            let straight = configured(standard, unit, &configuration);
-            let mut interrupted = configured(standard, unit, &configuration);
+            let straight = configured(standard, model, &configuration);
+            let mut interrupted = configured(standard, model, &configuration);
             if choice.below(8) == 0 {
                 let bytes = interrupted.saved_bytes();
-                interrupted = Component::with_logging(BOTH[choice.below(2) as usize], unit, false);
+                interrupted = Component::with_logging(BOTH[choice.below(2) as usize], model, false);
                 assert_eq!(interrupted.restore_bytes(&bytes), OK);
                 restored += 1;
             }
             if straight.enter_initialization(0.0, None) != OK || straight.exit_initialization() != OK {
-                // These parameters make no unit.
+                // These parameters make no model.
                 continue;
             }
             interrupted.initialise(0.0);
             let (mut time, mut other_time) = (0.0, 0.0);
             for to_do in &moves {
-                let context = || format!("{standard:?} {unit}, sequence {sequence}");
+                let context = || format!("{standard:?} {model}, sequence {sequence}");
                 match choice.below(6) {
                     // In memory, after a detour.
                     0 => {
@@ -167,7 +167,7 @@ fn ten_thousand_interrupted_runs_never_differ_from_the_uninterrupted_ones() {
                         let bytes = interrupted.saved_bytes();
                         longest = longest.max(bytes.len());
                         let phase = PHASES[choice.below(4) as usize];
-                        interrupted = Component::in_phase(BOTH[choice.below(2) as usize], unit, phase);
+                        interrupted = Component::in_phase(BOTH[choice.below(2) as usize], model, phase);
                         assert_eq!(interrupted.restore_bytes(&bytes), OK, "{}", context());
                         assert_eq!(interrupted.saved_bytes(), bytes, "{}", context());
                         restored += 1;
@@ -187,12 +187,12 @@ fn ten_thousand_interrupted_runs_never_differ_from_the_uninterrupted_ones() {
 
 #[test]
 fn every_configuration_fits_into_four_kibibytes() {
-    for unit in names() {
+    for model in names() {
         let (mut shortest, mut longest) = (usize::MAX, 0);
         let mut choice = Choice::new(99);
         for _ in 0..300 {
-            let (configuration, _) = plan(unit, &mut choice);
-            let component = configured(Standard::Fmi3, unit, &configuration);
+            let (configuration, _) = plan(model, &mut choice);
+            let component = configured(Standard::Fmi3, model, &configuration);
             if component.enter_initialization(0.0, None) != OK || component.exit_initialization() != OK {
                 continue;
             }
@@ -204,21 +204,21 @@ fn every_configuration_fits_into_four_kibibytes() {
             shortest = shortest.min(length);
             longest = longest.max(length);
         }
-        println!("{unit}: {shortest} to {longest} bytes");
+        println!("{model}: {shortest} to {longest} bytes");
         assert!(longest <= LONGEST_SAVED_STATE);
     }
 }
 
 #[test]
 fn a_state_brings_its_phase_with_it() {
-    for unit in names() {
+    for model in names() {
         for (from, to) in BOTH.into_iter().flat_map(|from| BOTH.map(|to| (from, to))) {
             for saved in PHASES {
-                let bytes = Component::in_phase(from, unit, saved).saved_bytes();
+                let bytes = Component::in_phase(from, model, saved).saved_bytes();
                 for present in PHASES {
-                    let component = Component::in_phase(to, unit, present);
+                    let component = Component::in_phase(to, model, present);
                     assert_eq!(component.restore_bytes(&bytes), OK);
-                    assert!(component.is_still_in(saved), "{unit}: {saved:?} restored in {present:?}");
+                    assert!(component.is_still_in(saved), "{model}: {saved:?} restored in {present:?}");
                 }
             }
         }
@@ -227,8 +227,8 @@ fn a_state_brings_its_phase_with_it() {
 
 #[test]
 fn handles_are_reused_and_null_is_free() {
-    for (standard, unit) in super::harness::all() {
-        let component = Component::in_phase(standard, unit, Phase::Step);
+    for (standard, model) in super::harness::all() {
+        let component = Component::in_phase(standard, model, Phase::Step);
         let (mut first, mut second) = (null_mut(), null_mut());
         assert_eq!(component.get_state(&mut first), OK);
         let before = component.snapshot();
@@ -309,8 +309,8 @@ fn assert_no_state(component: &Component, bytes: &[u8], said: &[&str]) {
 
 #[test]
 fn damaged_bytes_are_refused() {
-    for unit in names() {
-        let component = Component::in_phase(Standard::Fmi3, unit, Phase::Step);
+    for model in names() {
+        let component = Component::in_phase(Standard::Fmi3, model, Phase::Step);
         let bytes = component.saved_bytes();
         for bit in 0..8 * bytes.len() {
             let mut flipped = bytes.clone();
@@ -331,11 +331,11 @@ fn damaged_bytes_are_refused() {
 #[test]
 fn foreign_bytes_are_refused_by_name() {
     for standard in BOTH {
-        for unit in names() {
-            let component = Component::in_phase(standard, unit, Phase::Step);
-            for other in names().filter(|other| *other != unit) {
+        for model in names() {
+            let component = Component::in_phase(standard, model, Phase::Step);
+            for other in names().filter(|other| *other != model) {
                 let foreign = Component::in_phase(standard, other, Phase::Step);
-                let said = format!("a state of {other}: expected {unit}");
+                let said = format!("a state of {other}: expected {model}");
                 assert_no_state(&component, &foreign.saved_bytes(), &[&said]);
                 // The same in memory.
                 let mut state = null_mut();
@@ -368,11 +368,11 @@ fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
 #[test]
 fn contents_that_lie_do_no_harm() {
     let (mut accepted, mut refused) = (0, 0);
-    for unit in names() {
+    for model in names() {
         let mut choice = Choice::new(5);
         for round in 0..40 {
-            let (configuration, _) = plan(unit, &mut choice);
-            let source = configured(Standard::Fmi3, unit, &configuration);
+            let (configuration, _) = plan(model, &mut choice);
+            let source = configured(Standard::Fmi3, model, &configuration);
             if round > 0
                 && (source.enter_initialization(0.0, None) != OK || source.exit_initialization() != OK)
             {
@@ -393,7 +393,7 @@ fn contents_that_lie_do_no_harm() {
                         _ => choice.below(256) as u8,
                     };
                 }
-                let component = Component::with_logging(Standard::Fmi3, unit, false);
+                let component = Component::with_logging(Standard::Fmi3, model, false);
                 let status = component.restore_bytes(&sealed(forged));
                 if status == ERROR {
                     refused += 1;

@@ -1,4 +1,4 @@
-//! Scheduled execution of the sampled units: intervals of the clock, activations, callbacks.
+//! Scheduled execution of the sampled models: intervals of the clock, activations, callbacks.
 
 use core::cell::Cell;
 use core::ffi::c_void;
@@ -6,7 +6,7 @@ use core::ffi::c_void;
 use maglev_fmu::fmi::fmi3::types::{FMI3_INTERVAL_CHANGED, FMI3_INTERVAL_UNCHANGED};
 use maglev_fmu::fmi::fmi3::*;
 
-use super::harness::clocked::{Choices, sampled_units};
+use super::harness::clocked::{Choices, sampled_models};
 use super::harness::{CONTROLLER, Component, ERROR, OK};
 
 type Timing = ([f64; 2], [(u64, u64); 2], [i32; 2]);
@@ -132,8 +132,8 @@ fn an_importer_may_set_the_interval() {
 
 #[test]
 fn activations_run_ticks() {
-    for unit in sampled_units() {
-        let component = Component::scheduled(unit, None);
+    for model in sampled_models() {
+        let component = Component::scheduled(model, None);
         component.initialise(0.0);
         for k in 0..5 {
             let time = f64::from(k) * component.get("sample_time");

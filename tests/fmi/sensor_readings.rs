@@ -1,16 +1,16 @@
-//! Sensors with a sample time: readings lie at its multiples, one number of the noise each, whoever solves the unit and
+//! Sensors with a sample time: readings lie at its multiples, one number of the noise each, whoever solves the model and
 //! however the time is cut. Without one, an importer that integrates a plant sees the value itself.
 
-use maglev_fmu::unit::Description;
-use maglev_fmu::unit::variable::{Kind, Variable};
+use maglev_fmu::model::Description;
+use maglev_fmu::model::variable::{Kind, Variable};
 
 use super::harness::{BOTH, Component, OK, Standard, description, plants};
 
 const SAMPLE_TIME: f64 = 1e-3;
 
 /// What the sensor of a plant reads, and the reading.
-fn sensor(unit: &str) -> (&'static str, &'static str) {
-    let reading = reading(description(unit));
+fn sensor(model: &str) -> (&'static str, &'static str) {
+    let reading = reading(description(model));
     (reading.name.strip_suffix("_measured").unwrap(), reading.name)
 }
 
@@ -31,22 +31,22 @@ fn prepare(component: &Component, sample_time: f64) {
     assert_eq!(component.set("voltage", 0.5), OK);
 }
 
-fn stepped(standard: Standard, unit: &str, sample_time: f64) -> Component {
-    let component = Component::new(standard, unit);
+fn stepped(standard: Standard, model: &str, sample_time: f64) -> Component {
+    let component = Component::new(standard, model);
     prepare(&component, sample_time);
     component
 }
 
-fn integrated(standard: Standard, unit: &str, sample_time: f64) -> Component {
-    let component = Component::exchanged(standard, unit);
+fn integrated(standard: Standard, model: &str, sample_time: f64) -> Component {
+    let component = Component::exchanged(standard, model);
     prepare(&component, sample_time);
     component
 }
 
 /// Readings at the first multiples of the sample time, the start included, of a sensor that is read once per step.
-fn readings_of_steps(standard: Standard, unit: &str, count: usize) -> Vec<f64> {
-    let component = stepped(standard, unit, 0.0);
-    let (_, reading) = sensor(unit);
+fn readings_of_steps(standard: Standard, model: &str, count: usize) -> Vec<f64> {
+    let component = stepped(standard, model, 0.0);
+    let (_, reading) = sensor(model);
     (0..count)
         .map(|k| {
             if k > 0 {
@@ -64,11 +64,11 @@ fn assert_same(one: f64, other: f64, context: &str) {
 
 #[test]
 fn readings_do_not_depend_on_how_the_time_is_cut_into_steps() {
-    for (standard, unit) in plants() {
-        let expected = readings_of_steps(standard, unit, 40);
-        let (_, reading) = sensor(unit);
+    for (standard, model) in plants() {
+        let expected = readings_of_steps(standard, model, 40);
+        let (_, reading) = sensor(model);
         for steps_per_sample in [1.0, 4.0, 2.0 / 7.0, 0.3, 1.7] {
-            let component = stepped(standard, unit, SAMPLE_TIME);
+            let component = stepped(standard, model, SAMPLE_TIME);
             let step = SAMPLE_TIME / steps_per_sample;
             assert_eq!(component.get(reading).to_bits(), expected[0].to_bits());
             let steps = (38.0 * steps_per_sample) as u32;
@@ -76,7 +76,7 @@ fn readings_do_not_depend_on_how_the_time_is_cut_into_steps() {
                 assert_eq!(component.step(f64::from(k) * step, step), OK);
                 // The multiple at the step's end belongs to it.
                 let last = (f64::from(k + 1) / steps_per_sample + 1e-6).floor() as usize;
-                let context = format!("{standard:?} {unit}, {steps_per_sample} steps per sample, step {k}");
+                let context = format!("{standard:?} {model}, {steps_per_sample} steps per sample, step {k}");
                 if steps_per_sample == 1.0 {
                     assert_eq!(component.get(reading).to_bits(), expected[last].to_bits(), "{context}");
                 }
@@ -110,10 +110,10 @@ fn integrate(component: &Component, time: f64, h: f64) {
 
 #[test]
 fn an_importer_that_integrates_comes_to_every_reading_once() {
-    for (standard, unit) in plants() {
-        let expected = readings_of_steps(standard, unit, 30);
-        let component = integrated(standard, unit, SAMPLE_TIME);
-        let (value, reading) = sensor(unit);
+    for (standard, model) in plants() {
+        let expected = readings_of_steps(standard, model, 30);
+        let component = integrated(standard, model, SAMPLE_TIME);
+        let (value, reading) = sensor(model);
         let (status, _, mut next) = component.event_iteration();
         assert_eq!((status, next), (OK, Some(SAMPLE_TIME)));
         assert_eq!(component.get(reading).to_bits(), expected[0].to_bits());
@@ -129,7 +129,7 @@ fn an_importer_that_integrates_comes_to_every_reading_once() {
             integrate(&component, time, half);
             assert_eq!(component.enter_event_mode(), OK);
             for _ in 0..2 {
-                assert_eq!(component.event_iteration().2, Some(event), "{standard:?} {unit} {k}");
+                assert_eq!(component.event_iteration().2, Some(event), "{standard:?} {model} {k}");
             }
             assert_eq!(component.enter_continuous_time(), OK);
             integrate(&component, time + half, half);
@@ -140,7 +140,7 @@ fn an_importer_that_integrates_comes_to_every_reading_once() {
             assert_eq!(component.set_time(event + lateness), OK);
             assert_eq!(component.enter_event_mode(), OK);
             next = component.event_iteration().2;
-            let context = format!("{standard:?} {unit}, reading {k}");
+            let context = format!("{standard:?} {model}, reading {k}");
             assert_same(component.get(reading), *expected_reading, &context);
             // The same event again reads nothing again.
             let read = component.get(reading);
@@ -153,14 +153,14 @@ fn an_importer_that_integrates_comes_to_every_reading_once() {
 
 #[test]
 fn an_importer_that_misses_readings_gets_one_and_goes_on() {
-    for (standard, unit) in plants() {
-        let component = integrated(standard, unit, SAMPLE_TIME);
+    for (standard, model) in plants() {
+        let component = integrated(standard, model, SAMPLE_TIME);
         component.update_discrete_states();
         assert_eq!(component.enter_continuous_time(), OK);
         for (time, next) in [(2.5 * SAMPLE_TIME, 3.0), (7.0 * SAMPLE_TIME, 8.0), (1e3, 1e6 + 1.0)] {
             assert_eq!(component.set_time(time), OK);
             assert_eq!(component.enter_event_mode(), OK);
-            assert_eq!(component.event_iteration().2, Some(next * SAMPLE_TIME), "{standard:?} {unit}");
+            assert_eq!(component.event_iteration().2, Some(next * SAMPLE_TIME), "{standard:?} {model}");
             assert_eq!(component.enter_continuous_time(), OK);
         }
         // So late that there is no later time.
@@ -172,21 +172,21 @@ fn an_importer_that_misses_readings_gets_one_and_goes_on() {
 
 #[test]
 fn readings_go_on_from_a_saved_state() {
-    for (standard, unit) in plants() {
-        let (_, reading) = sensor(unit);
-        let (whole, cut) = (stepped(standard, unit, SAMPLE_TIME), stepped(standard, unit, SAMPLE_TIME));
+    for (standard, model) in plants() {
+        let (_, reading) = sensor(model);
+        let (whole, cut) = (stepped(standard, model, SAMPLE_TIME), stepped(standard, model, SAMPLE_TIME));
         let step = 0.4 * SAMPLE_TIME;
         for k in 0..50 {
             let time = f64::from(k) * step;
             assert_eq!(whole.step(time, step), OK);
-            let restored = Component::new(standard, unit);
+            let restored = Component::new(standard, model);
             assert_eq!(restored.restore_bytes(&cut.saved_bytes()), OK);
             assert_eq!(restored.step(time, step), OK);
             assert_eq!(cut.restore_bytes(&restored.saved_bytes()), OK);
-            assert_eq!(cut.get(reading).to_bits(), whole.get(reading).to_bits(), "{unit} {k}");
+            assert_eq!(cut.get(reading).to_bits(), whole.get(reading).to_bits(), "{model} {k}");
         }
         // In model exchange, too; the time goes back with it.
-        let component = integrated(standard, unit, SAMPLE_TIME);
+        let component = integrated(standard, model, SAMPLE_TIME);
         component.update_discrete_states();
         assert_eq!(component.enter_continuous_time(), OK);
         let event = || {
@@ -198,15 +198,15 @@ fn readings_go_on_from_a_saved_state() {
         let saved = component.saved_bytes();
         let first = event();
         assert_eq!(component.restore_bytes(&saved), OK);
-        assert_eq!(event(), first, "{standard:?} {unit}");
+        assert_eq!(event(), first, "{standard:?} {model}");
     }
 }
 
 #[test]
 fn a_state_from_before_the_start_fits_both_interfaces() {
-    for (standard, unit) in plants() {
-        let (value, reading) = sensor(unit);
-        let (stepped, exchanged) = (Component::new(standard, unit), Component::exchanged(standard, unit));
+    for (standard, model) in plants() {
+        let (value, reading) = sensor(model);
+        let (stepped, exchanged) = (Component::new(standard, model), Component::exchanged(standard, model));
         for component in [&stepped, &exchanged] {
             assert_eq!(component.set("sensor.noise", 1e-3), OK);
             assert_eq!(component.enter_initialization(0.0, None), OK);
@@ -224,9 +224,9 @@ fn a_state_from_before_the_start_fits_both_interfaces() {
 
 #[test]
 fn without_a_sample_time_an_importer_sees_the_value_itself() {
-    for (standard, unit) in plants() {
-        let (value, reading) = sensor(unit);
-        let component = Component::exchanged(standard, unit);
+    for (standard, model) in plants() {
+        let (value, reading) = sensor(model);
+        let component = Component::exchanged(standard, model);
         assert_eq!(component.set("sensor.noise", 1e-3), OK);
         assert_eq!(component.set("sensor.resolution", 0.25), OK);
         component.initialise(0.0);
@@ -236,7 +236,7 @@ fn without_a_sample_time_an_importer_sees_the_value_itself() {
         let mut states = component.states();
         states[0] += 1e-4;
         assert_eq!(component.set_states(&states), OK);
-        assert_eq!(component.get(reading), component.get(value), "{standard:?} {unit}");
+        assert_eq!(component.get(reading), component.get(value), "{standard:?} {model}");
         assert_eq!(component.set_time(1e-3), OK);
         assert_eq!(component.enter_event_mode(), OK);
         assert_eq!(component.event_iteration().2, None);
@@ -281,8 +281,8 @@ fn what_the_voltage_drives_flows_at_once_in_model_exchange() {
 
 #[test]
 fn a_sample_time_that_nobody_could_step_through_is_refused() {
-    for (standard, unit) in plants() {
-        for component in [Component::new(standard, unit), Component::exchanged(standard, unit)] {
+    for (standard, model) in plants() {
+        for component in [Component::new(standard, model), Component::exchanged(standard, model)] {
             assert_eq!(component.enter_initialization(0.0, None), OK);
             component.recorder.clear();
             for sample_time in [1e-9, 5e-324, 9.99e-7] {

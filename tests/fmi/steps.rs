@@ -10,9 +10,9 @@ use super::harness::{BOTH, CONTROLLER, Component, ERROR, OK, PLANT, Phase, Stand
 
 #[test]
 fn a_refused_step_names_its_numbers_and_changes_nothing() {
-    for (standard, unit) in all() {
-        let component = Component::in_phase(standard, unit, Phase::Step);
-        let twin = Component::in_phase(standard, unit, Phase::Step);
+    for (standard, model) in all() {
+        let component = Component::in_phase(standard, model, Phase::Step);
+        let twin = Component::in_phase(standard, model, Phase::Step);
         let before = component.snapshot();
         let now = Component::STEPPED_TO;
         for h in [0.0, -0.0, -1e-3, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
@@ -44,8 +44,8 @@ fn a_refused_step_names_its_numbers_and_changes_nothing() {
 #[test]
 fn a_step_ends_at_a_finite_time() {
     let start = 1.7e308;
-    for (standard, unit) in all() {
-        let component = Component::new(standard, unit);
+    for (standard, model) in all() {
+        let component = Component::new(standard, model);
         if component.description.is_sampled() {
             // So far away no tick can be counted.
             let (_, sample_time) = component.description.find("sample_time").unwrap();
@@ -108,8 +108,8 @@ fn a_step_with_too_many_ticks_is_refused_instead_of_never_ending() {
 
 #[test]
 fn results_of_fmi3_steps_are_set_when_asked_for() {
-    for unit in [PLANT, CONTROLLER] {
-        let component = Component::in_phase(Standard::Fmi3, unit, Phase::Step);
+    for model in [PLANT, CONTROLLER] {
+        let component = Component::in_phase(Standard::Fmi3, model, Phase::Step);
         let now = Component::STEPPED_TO;
         let (mut event, mut terminate, mut early, mut reached) = (7, 7, 7, -1.0);
         let mut step = |time| {
@@ -156,8 +156,8 @@ fn last_successful_time_is_told_in_fmi2() {
 /// A step may begin where the last one ended but for rounding, however long it is.
 #[test]
 fn a_step_that_does_not_follow_is_refused_however_long() {
-    for (standard, unit) in all() {
-        let component = Component::in_phase(standard, unit, Phase::Step);
+    for (standard, model) in all() {
+        let component = Component::in_phase(standard, model, Phase::Step);
         let now = Component::STEPPED_TO;
         let before = component.snapshot();
         for (time, h) in [
@@ -179,8 +179,8 @@ fn a_step_that_does_not_follow_is_refused_however_long() {
 
 #[test]
 fn experiments_that_make_no_sense_are_refused() {
-    for (standard, unit) in all() {
-        let component = Component::in_phase(standard, unit, Phase::Instantiated);
+    for (standard, model) in all() {
+        let component = Component::in_phase(standard, model, Phase::Instantiated);
         for (start, stop, said) in [
             (f64::NAN, None, "startTime = NaN s: expected a finite time"),
             (f64::INFINITY, None, "startTime = inf s"),
@@ -200,9 +200,9 @@ fn experiments_that_make_no_sense_are_refused() {
 
 #[test]
 fn time_starts_where_the_experiment_does() {
-    for (standard, unit) in all() {
+    for (standard, model) in all() {
         for start in [-3.0, 0.0025, 1e3, 1.7e9] {
-            let component = Component::new(standard, unit);
+            let component = Component::new(standard, model);
             component.initialise(start);
             component.recorder.clear();
             let said = format!("does not follow the last one: expected {start} s");
@@ -238,8 +238,8 @@ fn the_trajectory_does_not_depend_on_the_start_time() {
 
 #[test]
 fn fmi2_starts_at_zero_without_an_experiment() {
-    for unit in [PLANT, CONTROLLER] {
-        let component = Component::new(Standard::Fmi2, unit);
+    for model in [PLANT, CONTROLLER] {
+        let component = Component::new(Standard::Fmi2, model);
         // SAFETY: a live handle.
         assert_eq!(unsafe { fmi2EnterInitializationMode(component.handle) }, OK);
         assert_eq!(component.exit_initialization(), OK);

@@ -1,7 +1,7 @@
 //! The stop time is the end of time: "If the environment tries to compute past stopTime, the FMU has to return Error"
 //! (FMI 2.0.5, section 2.1.6; FMI 3.0.2, section 2.3.2). And how far time goes back.
 
-use super::harness::clocked::{Choices, sampled_units};
+use super::harness::clocked::{Choices, sampled_models};
 use super::harness::{BOTH, Component, OK, all, plants};
 
 const STOP: f64 = 0.01;
@@ -18,16 +18,16 @@ fn stepping(component: Component) -> Component {
 
 #[test]
 fn steps_end_at_the_stop_time() {
-    for (standard, unit) in all() {
-        let component = stepping(Component::new(standard, unit));
-        let twin = stepping(Component::new(standard, unit));
-        let unstopped = Component::new(standard, unit);
+    for (standard, model) in all() {
+        let component = stepping(Component::new(standard, model));
+        let twin = stepping(Component::new(standard, model));
+        let unstopped = Component::new(standard, model);
         unstopped.initialise(0.0);
         let said = "past the stop time: expected at most 0.01 s";
         component.assert_refused(component.step(0.0, 1.0), &[said, "= 1 s"]);
         for k in 0..9 {
             for instance in [&component, &twin, &unstopped] {
-                assert_eq!(instance.step(f64::from(k) * 1e-3, 1e-3), OK, "{unit}, step {k}");
+                assert_eq!(instance.step(f64::from(k) * 1e-3, 1e-3), OK, "{model}, step {k}");
             }
         }
         let before = component.snapshot();
@@ -63,7 +63,7 @@ fn importers_that_add_up_their_steps_finish() {
                 time += h;
             }
             assert!(time - stop > 1e-7 * h, "late by more than 1e-9 of a step: {time}");
-            // The unit went along with the importer, and its clock with the number of steps.
+            // The model went along with the importer, and its clock with the number of steps.
             assert_eq!(component.get("time"), time);
             assert!((component.get("tick_time") - (stop - 1e-3)).abs() < 1e-9);
             component.recorder.clear();
@@ -74,10 +74,10 @@ fn importers_that_add_up_their_steps_finish() {
 
 #[test]
 fn saved_states_remember_the_stop_time() {
-    for (standard, unit) in all() {
-        let component = stepping(Component::new(standard, unit));
+    for (standard, model) in all() {
+        let component = stepping(Component::new(standard, model));
         let bytes = component.saved_bytes();
-        let other = Component::new(standard, unit);
+        let other = Component::new(standard, model);
         other.initialise(0.0);
         assert_eq!(other.restore_bytes(&bytes), OK);
         other.recorder.clear();
@@ -91,9 +91,9 @@ fn saved_states_remember_the_stop_time() {
 
 #[test]
 fn steps_that_end_at_ticks_are_asked_for_within_the_stop_time() {
-    for unit in sampled_units() {
+    for model in sampled_models() {
         let choices = Choices { event_mode: true, early_return: true, intermediate_update: None };
-        let component = stepping(Component::co_simulation(unit, choices));
+        let component = stepping(Component::co_simulation(model, choices));
         assert_eq!(component.enter_step_mode(), OK);
         component.assert_refused(component.step_to_event(0.0, 1.0).status, &["past the stop time"]);
         assert_eq!(component.step_to_event(0.0, STOP).status, OK);
@@ -102,8 +102,8 @@ fn steps_that_end_at_ticks_are_asked_for_within_the_stop_time() {
 
 #[test]
 fn schedulers_activate_up_to_the_stop_time() {
-    for unit in sampled_units() {
-        let component = stepping(Component::scheduled(unit, None));
+    for model in sampled_models() {
+        let component = stepping(Component::scheduled(model, None));
         assert_eq!(component.activate(0.0), OK);
         let said = "activationTime = 0.011 s is past the stop time: expected at most 0.01 s";
         component.assert_refused(component.activate(0.011), &[said]);
@@ -114,8 +114,8 @@ fn schedulers_activate_up_to_the_stop_time() {
 /// A solver that takes steps as it likes evaluates beyond the stop time and interpolates back (CVODE, as FMPy runs it).
 #[test]
 fn an_integration_ends_at_the_stop_time_though_its_solver_looks_beyond() {
-    for (standard, unit) in plants() {
-        let component = stepping(Component::exchanged(standard, unit));
+    for (standard, model) in plants() {
+        let component = stepping(Component::exchanged(standard, model));
         component.update_discrete_states();
         assert_eq!(component.enter_continuous_time(), OK);
         assert_eq!(component.set_time(9e-3), OK);
@@ -134,8 +134,8 @@ fn an_integration_ends_at_the_stop_time_though_its_solver_looks_beyond() {
 
 #[test]
 fn time_of_an_integration_goes_back_to_the_step_before_the_last() {
-    for (standard, unit) in plants() {
-        let component = Component::in_continuous_time(standard, unit);
+    for (standard, model) in plants() {
+        let component = Component::in_continuous_time(standard, model);
         let complete = |time| {
             assert_eq!(component.set_time(time), OK);
             assert_eq!(component.complete_integrator_step(), OK);

@@ -1,10 +1,10 @@
-//! However an importer has a unit tick, within steps, at events, on activation, in either standard: the same ticks, at the
+//! However an importer has a model tick, within steps, at events, on activation, in either standard: the same ticks, at the
 //! same times, with the same inputs, to the last bit.
 
-use maglev_fmu::unit::Edition;
-use maglev_fmu::unit::variable::{Causality, Kind};
+use maglev_fmu::model::Edition;
+use maglev_fmu::model::variable::{Causality, Kind};
 
-use super::harness::clocked::{Choices, go_on, sampled_units};
+use super::harness::clocked::{Choices, go_on, sampled_models};
 use super::harness::{Component, OK, Standard};
 
 /// \[s\]
@@ -40,26 +40,26 @@ const MODES: [Mode; 8] = [
     Mode::Scheduled,
 ];
 
-fn instance(mode: Mode, unit: &str) -> Component {
+fn instance(mode: Mode, model: &str) -> Component {
     let none = Choices::default();
     match mode {
-        Mode::Fmi2 => Component::with_logging(Standard::Fmi2, unit, false),
-        Mode::Fmi3 => Component::with_logging(Standard::Fmi3, unit, false),
+        Mode::Fmi2 => Component::with_logging(Standard::Fmi2, model, false),
+        Mode::Fmi3 => Component::with_logging(Standard::Fmi3, model, false),
         Mode::Events | Mode::EventsAndClocks => {
-            Component::co_simulation(unit, Choices { event_mode: true, early_return: true, ..none })
+            Component::co_simulation(model, Choices { event_mode: true, early_return: true, ..none })
         }
         Mode::EventsWithoutEarlyReturn => {
-            Component::co_simulation(unit, Choices { event_mode: true, ..none })
+            Component::co_simulation(model, Choices { event_mode: true, ..none })
         }
         Mode::Callbacks => {
-            Component::co_simulation(unit, Choices { intermediate_update: Some(go_on), ..none })
+            Component::co_simulation(model, Choices { intermediate_update: Some(go_on), ..none })
         }
         Mode::PlainCallbacks => Component::co_simulation_of(
             Edition::Plain,
-            unit,
+            model,
             Choices { intermediate_update: Some(go_on), ..none },
         ),
-        Mode::Scheduled => Component::scheduled(unit, None),
+        Mode::Scheduled => Component::scheduled(model, None),
     }
 }
 
@@ -80,8 +80,8 @@ fn values(component: &Component) -> Vec<u64> {
 }
 
 /// Values at the end of each step, before anything happens that belongs to the next one.
-fn run(mode: Mode, unit: &str, step_size: f64) -> Vec<Vec<u64>> {
-    let component = instance(mode, unit);
+fn run(mode: Mode, model: &str, step_size: f64) -> Vec<Vec<u64>> {
+    let component = instance(mode, model);
     component.initialise(0.0);
     let steps = (DURATION / step_size) as u32;
     let period = component.get("sample_time");
@@ -144,18 +144,18 @@ fn run(mode: Mode, unit: &str, step_size: f64) -> Vec<Vec<u64>> {
 
 #[test]
 fn all_modes_give_the_same_ticks_and_bits() {
-    for unit in sampled_units() {
+    for model in sampled_models() {
         for step_size in STEP_SIZES {
-            let expected = run(Mode::Fmi2, unit, step_size);
+            let expected = run(Mode::Fmi2, model, step_size);
             let distinct = expected.iter().collect::<std::collections::HashSet<_>>().len();
             assert!(distinct > expected.len() / 5, "the run stands still: {distinct} of {}", expected.len());
             for mode in MODES {
-                let rows = run(mode, unit, step_size);
+                let rows = run(mode, model, step_size);
                 assert_eq!(rows.len(), expected.len());
                 let first = (0..rows.len()).find(|j| rows[*j] != expected[*j]);
                 assert_eq!(
                     first, None,
-                    "{unit}, {mode:?}, h = {step_size}: first difference after this step"
+                    "{model}, {mode:?}, h = {step_size}: first difference after this step"
                 );
             }
         }

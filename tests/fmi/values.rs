@@ -1,6 +1,6 @@
 //! Values go in and out as they are, and take effect when the standards say.
 
-use maglev_fmu::unit::variable::{Causality, Kind, Variability, Variable};
+use maglev_fmu::model::variable::{Causality, Kind, Variability, Variable};
 
 use super::harness::{BOTH, CONTROLLER, Component, OK, PLANT, Phase, all, bearing};
 
@@ -18,12 +18,12 @@ pub fn other_value(variable: &Variable) -> f64 {
 
 #[test]
 fn every_variable_goes_in_and_out_by_reference() {
-    for (standard, unit) in all() {
+    for (standard, model) in all() {
         for phase in [Phase::Instantiated, Phase::Initialization, Phase::Step] {
             let mut settable = 0;
-            for (reference, variable) in (0..).zip(Component::new(standard, unit).description.variables) {
-                let component = Component::in_phase(standard, unit, phase);
-                let context = format!("{standard:?} {unit} {} in {}", variable.name, phase.name());
+            for (reference, variable) in (0..).zip(Component::new(standard, model).description.variables) {
+                let component = Component::in_phase(standard, model, phase);
+                let context = format!("{standard:?} {model} {} in {}", variable.name, phase.name());
                 let value = other_value(variable);
                 let status = component.set_reference(reference, value);
                 let may = match (variable.causality, variable.variability) {
@@ -46,7 +46,7 @@ fn every_variable_goes_in_and_out_by_reference() {
                     }
                 }
             }
-            println!("{standard:?} {unit} {}: {settable} settable", phase.name());
+            println!("{standard:?} {model} {}: {settable} settable", phase.name());
             assert!(settable >= if phase == Phase::Step { 4 } else { 10 });
         }
     }
@@ -54,8 +54,8 @@ fn every_variable_goes_in_and_out_by_reference() {
 
 #[test]
 fn extremes_of_every_range_are_accepted() {
-    for (standard, unit) in all() {
-        let component = Component::in_phase(standard, unit, Phase::Initialization);
+    for (standard, model) in all() {
+        let component = Component::in_phase(standard, model, Phase::Initialization);
         for (reference, variable) in (0..).zip(component.description.variables) {
             let (minimum, maximum) = match variable.kind {
                 Kind::Enumeration(enumeration) => (1.0, enumeration.items.len() as f64),
@@ -154,18 +154,18 @@ fn run(component: &Component, choice: Option<(&str, f64)>, change: Option<(i32, 
 #[test]
 fn every_tunable_takes_effect_at_the_next_step_and_not_before() {
     let mut tried = 0;
-    for (standard, unit) in bearing() {
-        for (reference, variable) in (0..).zip(Component::new(standard, unit).description.variables) {
+    for (standard, model) in bearing() {
+        for (reference, variable) in (0..).zip(Component::new(standard, model).description.variables) {
             if variable.variability != Variability::Tunable {
                 continue;
             }
             tried += 1;
             // Three ticks fill the observer's window; what concerns its iterations shows in the fourth.
             let choice = relevant_choice(variable.name);
-            let reference_run = run(&Component::new(standard, unit), choice, None);
-            let changed = run(&Component::new(standard, unit), choice, Some((3, reference)));
+            let reference_run = run(&Component::new(standard, model), choice, None);
+            let changed = run(&Component::new(standard, model), choice, Some((3, reference)));
             let first_difference = (0..40).find(|k| changed[*k] != reference_run[*k]);
-            println!("{standard:?} {unit} {}: from step {first_difference:?} on", variable.name);
+            println!("{standard:?} {model} {}: from step {first_difference:?} on", variable.name);
             assert!(
                 first_difference.is_some_and(|k| (3..8).contains(&k)),
                 "{} {first_difference:?}",

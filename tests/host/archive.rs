@@ -10,7 +10,7 @@ use tempfile::TempDir;
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
-use super::small_unit;
+use super::small_model;
 
 const DESCRIPTION: &str = r#"<fmiModelDescription fmiVersion="3.0" modelName="Empty" instantiationToken="t">
   <CoSimulation modelIdentifier="Empty"/><ModelVariables/><ModelStructure/>
@@ -19,7 +19,7 @@ const DESCRIPTION: &str = r#"<fmiModelDescription fmiVersion="3.0" modelName="Em
 /// Writes an archive with these entries; the directory must outlive its use.
 fn archive(entries: &[(&str, &[u8])]) -> (TempDir, PathBuf) {
     let directory = tempfile::tempdir().unwrap();
-    let path = directory.path().join("unit.fmu");
+    let path = directory.path().join("model.fmu");
     let mut zip = ZipWriter::new(File::create(&path).unwrap());
     for (name, content) in entries {
         zip.start_file(*name, SimpleFileOptions::default()).unwrap();
@@ -124,13 +124,13 @@ fn a_file_that_is_no_library_is_refused() {
 #[cfg(target_os = "linux")]
 #[test]
 fn the_linker_says_what_a_library_lacks() {
-    let library = small_unit::compile(
+    let library = small_model::compile(
         "extern \"C\" { fn maglev_nowhere_to_be_found(); }\n\
          #[no_mangle] pub extern \"C\" fn fmi3GetVersion() { unsafe { maglev_nowhere_to_be_found() } }",
     );
-    let error = small_unit::open_with(small_unit::FMI3, &library).unwrap_err();
+    let error = small_model::open_with(small_model::FMI3, &library).unwrap_err();
     assert!(matches!(&error, HostError::LoadLibrary { .. }), "{error}");
     assert!(error.to_string().contains("undefined symbol: maglev_nowhere_to_be_found"), "{error}");
-    let error = small_unit::open_with(small_unit::FMI3, b"not a library").unwrap_err().to_string();
+    let error = small_model::open_with(small_model::FMI3, b"not a library").unwrap_err().to_string();
     assert!(error.contains("file too short") || error.contains("invalid ELF header"), "{error}");
 }

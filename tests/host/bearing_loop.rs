@@ -1,8 +1,8 @@
 //! The bearing loop natively and through packaged FMUs of both standards: the same bits.
 
-use maglev_fmu::host::{ExchangeOrder, TwoUnitLoop};
+use maglev_fmu::host::{ExchangeOrder, ControlLoop};
 use maglev_fmu::package::FmiVersion::{self, Three, Two};
-use maglev_fmu::unit::system::BEARING;
+use maglev_fmu::model::system::BEARING;
 use maglev_fmu_test::closed_loop::closed_loop;
 use maglev_fmu_test::packages;
 use maglev_fmu_test::values::get;
@@ -68,9 +68,9 @@ fn natively(scenario: &Scenario) -> Columns {
     let mut columns = vec![Vec::new(); RECORD.len()];
     for _ in 0..STEPS {
         bearing.step_controller().unwrap();
-        for ((unit, name), column) in RECORD.iter().zip(&mut columns) {
+        for ((model, name), column) in RECORD.iter().zip(&mut columns) {
             let value =
-                if *unit == "plant" { get(&*bearing.plant, name) } else { get(&*bearing.controller, name) };
+                if *model == "plant" { get(&*bearing.plant, name) } else { get(&*bearing.controller, name) };
             column.push(value.to_bits());
         }
         bearing.step_plant().unwrap();
@@ -79,7 +79,7 @@ fn natively(scenario: &Scenario) -> Columns {
 }
 
 fn through_fmus(scenario: &Scenario, plant: FmiVersion, controller: FmiVersion) -> Columns {
-    let mut bearing = TwoUnitLoop::connect(
+    let mut bearing = ControlLoop::connect(
         packages::instantiate(controller, CONTROLLER, scenario.controller),
         packages::instantiate(plant, PLANT, scenario.plant),
         ExchangeOrder::ControllerFirst,

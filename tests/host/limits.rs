@@ -26,7 +26,7 @@ const DESCRIPTION: &str = r#"<fmiModelDescription fmiVersion="3.0" modelName="Em
 /// Writes an archive; the directory must outlive its use.
 fn write(fill: impl FnOnce(&mut ZipWriter<File>)) -> (TempDir, PathBuf) {
     let directory = tempfile::tempdir().unwrap();
-    let path = directory.path().join("unit.fmu");
+    let path = directory.path().join("model.fmu");
     let mut zip = ZipWriter::new(File::create(&path).unwrap());
     fill(&mut zip);
     zip.finish().unwrap();

@@ -1,4 +1,4 @@
-//! The host: what it reads, what it refuses, and what it drives, small units that misbehave and the packaged ones.
+//! The host: what it reads, what it refuses, and what it drives, small models that misbehave and the packaged ones.
 
 mod archive;
 mod bearing_loop;
@@ -10,5 +10,5 @@ mod observers;
 mod parallel_loop;
 mod rig_loop;
 mod saved_state;
-mod small_unit;
+mod small_model;
 mod stepping;

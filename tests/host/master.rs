@@ -1,23 +1,23 @@
-//! The master of two units, with a small unit of each version.
+//! The master of two models, with a small model of each version.
 
-use maglev_fmu::host::{ExchangeOrder, Fmu, HostError, Instance, Logging, TwoUnitLoop};
+use maglev_fmu::host::{ExchangeOrder, Fmu, HostError, Instance, Logging, ControlLoop};
 
-use super::small_unit::*;
+use super::small_model::*;
 
-/// Controller `y = -u / 2`, plant `y <- y + u` from `y = 1`: the units of a loop, one of each version.
-fn control_loop(order: ExchangeOrder) -> TwoUnitLoop {
+/// Controller `y = -u / 2`, plant `y <- y + u` from `y = 1`: the models of a loop, one of each version.
+fn control_loop(order: ExchangeOrder) -> ControlLoop {
     let [two, three] = both();
     let with_parameters = |fmu: &Fmu, name: &str, parameters: [f64; 3]| -> Instance {
-        let mut unit = fmu.instantiate(name, Logging::Off).unwrap();
+        let mut model = fmu.instantiate(name, Logging::Off).unwrap();
         for (variable, value) in ["y", "a", "b"].into_iter().zip(parameters) {
-            unit.set_by_name(variable, value).unwrap();
+            model.set_by_name(variable, value).unwrap();
         }
-        unit
+        model
     };
     let controller = with_parameters(&two, "controller", [0.0, 0.0, -0.5]);
     let plant = with_parameters(&three, "plant", [1.0, 1.0, 1.0]);
     let mut control_loop =
-        TwoUnitLoop::connect(controller, plant, order, &[("y", "u"), ("flag", "flag")], &[("y", "u")])
+        ControlLoop::connect(controller, plant, order, &[("y", "u"), ("flag", "flag")], &[("y", "u")])
             .unwrap();
     control_loop.record(&[("plant", "y"), ("controller", "y"), ("plant", "steps")]).unwrap();
     control_loop
@@ -94,7 +94,7 @@ fn a_misused_loop_says_so() {
     }
     assert!(matches!(
         control_loop.record(&[("observer", "y")]),
-        Err(HostError::UnknownUnit { unit, .. }) if unit == "observer"
+        Err(HostError::UnknownModel { model, .. }) if model == "observer"
     ));
     assert!(matches!(control_loop.record(&[("plant", "z")]), Err(HostError::UnknownVariable { .. })));
     control_loop.initialise(0.0, None, 0.1).unwrap();
@@ -104,6 +104,6 @@ fn a_misused_loop_says_so() {
         Err(HostError::ForeignTrace { .. })
     ));
     let (controller, plant) = control_loop.into_instances();
-    let unknown = TwoUnitLoop::connect(controller, plant, ExchangeOrder::Parallel, &[("y", "w")], &[]);
+    let unknown = ControlLoop::connect(controller, plant, ExchangeOrder::Parallel, &[("y", "w")], &[]);
     assert!(matches!(unknown, Err(HostError::UnknownVariable { variable, .. }) if variable == "w"));
 }

@@ -1,4 +1,4 @@
-//! The controller unit runs the observers of the core, bit for bit, natively and as a packaged unit of both standards.
+//! The controller model runs the observers of the core, bit for bit, natively and as a packaged model of both standards.
 
 use maglev_fmu::host::Logging;
 use maglev_fmu::observer::kalman::{KalmanObserver, KalmanSettings};
@@ -7,7 +7,7 @@ use maglev_fmu::observer::reduced_newton::{ReducedNewtonObserver, ReducedNewtonS
 use maglev_fmu::observer::windowed_newton::{WindowedNewtonObserver, WindowedNewtonSettings};
 use maglev_fmu::package::Form;
 use maglev_fmu::plant::magnetic_bearing::{MagneticBearing, Map};
-use maglev_fmu::unit::{MagneticBearingController, Silence, Unit};
+use maglev_fmu::model::{MagneticBearingController, Silence, Model};
 use maglev_fmu_test::bearing::{APPLIED, KALMAN, OBSERVERS};
 use maglev_fmu_test::packages;
 use maglev_fmu_test::sampled_bearing::{Experiment, OBSERVER_START, T, law_a, state_feedback};
@@ -15,7 +15,7 @@ use maglev_fmu_test::values::{get, set};
 
 const BIAS_FLUX: f64 = 1e-4;
 
-/// What is compared, as the unit names it.
+/// What is compared, as the model names it.
 const RESULTS: [&str; 9] = [
     "estimate.position",
     "estimate.velocity",
@@ -120,42 +120,42 @@ fn expected(name: &str, samples: &[(f64, f64)]) -> Vec<Results> {
 }
 
 #[test]
-fn native_unit_runs_the_cores_observers() {
+fn native_model_runs_the_cores_observers() {
     let samples = samples();
     for (name, parameters) in OBSERVERS {
-        let mut unit = MagneticBearingController::new();
-        set(&mut unit, "bias_flux", BIAS_FLUX);
-        set(&mut unit, "observer.voltage_source", APPLIED);
-        parameters.iter().for_each(|(parameter, value)| set(&mut unit, parameter, *value));
-        unit.initialise(0.0).unwrap();
+        let mut model = MagneticBearingController::new();
+        set(&mut model, "bias_flux", BIAS_FLUX);
+        set(&mut model, "observer.voltage_source", APPLIED);
+        parameters.iter().for_each(|(parameter, value)| set(&mut model, parameter, *value));
+        model.initialise(0.0).unwrap();
         for (tick, (sample, expected)) in samples.iter().zip(expected(name, &samples)).enumerate() {
-            set(&mut unit, "position", sample.0);
-            set(&mut unit, "voltage_applied", sample.1);
-            unit.advance(T, &mut Silence).unwrap();
-            assert_eq!(RESULTS.map(|result| get(&unit, result)), expected, "{name}, tick {tick}");
+            set(&mut model, "position", sample.0);
+            set(&mut model, "voltage_applied", sample.1);
+            model.advance(T, &mut Silence).unwrap();
+            assert_eq!(RESULTS.map(|result| get(&model, result)), expected, "{name}, tick {tick}");
         }
     }
 }
 
 #[test]
-fn packaged_units_run_the_cores_observers() {
+fn packaged_models_run_the_cores_observers() {
     let samples = samples();
     for form in Form::ALL {
         let fmu = packages::open(form, "MagneticBearingController");
         for (name, parameters) in OBSERVERS {
-            let mut unit = fmu.instantiate(name, Logging::Off).unwrap();
-            unit.set_by_name("bias_flux", BIAS_FLUX).unwrap();
-            unit.set_by_name("observer.voltage_source", APPLIED).unwrap();
+            let mut model = fmu.instantiate(name, Logging::Off).unwrap();
+            model.set_by_name("bias_flux", BIAS_FLUX).unwrap();
+            model.set_by_name("observer.voltage_source", APPLIED).unwrap();
             for (parameter, value) in parameters {
-                let variable = unit.variable(parameter).unwrap();
-                unit.set(variable, *value).unwrap();
+                let variable = model.variable(parameter).unwrap();
+                model.set(variable, *value).unwrap();
             }
-            unit.initialise(0.0, None).unwrap();
+            model.initialise(0.0, None).unwrap();
             for (tick, (sample, expected)) in samples.iter().zip(expected(name, &samples)).enumerate() {
-                unit.set_by_name("position", sample.0).unwrap();
-                unit.set_by_name("voltage_applied", sample.1).unwrap();
-                unit.step(tick as f64 * T, T).unwrap();
-                let actual = RESULTS.map(|result| unit.get_by_name(result).unwrap());
+                model.set_by_name("position", sample.0).unwrap();
+                model.set_by_name("voltage_applied", sample.1).unwrap();
+                model.step(tick as f64 * T, T).unwrap();
+                let actual = RESULTS.map(|result| model.get_by_name(result).unwrap());
                 assert_eq!(actual, expected, "{name}, {form:?}, tick {tick}");
             }
         }
@@ -165,20 +165,20 @@ fn packaged_units_run_the_cores_observers() {
 #[test]
 fn kalman_ignores_the_map_and_announces_its_prior() {
     let mut runs = [1.0, 2.0].map(|map| {
-        let mut unit = MagneticBearingController::new();
-        set(&mut unit, "observer.kind", KALMAN);
-        set(&mut unit, "observer.map", map);
-        unit.initialise(0.0).unwrap();
-        unit
+        let mut model = MagneticBearingController::new();
+        set(&mut model, "observer.kind", KALMAN);
+        set(&mut model, "observer.map", map);
+        model.initialise(0.0).unwrap();
+        model
     });
     let deviations = ["position", "velocity", "flux"].map(|part| format!("estimate.{part}_deviation"));
     assert_eq!(deviations.map(|name| get(&runs[0], &name)), [1e-2, 1e-2, 1e-1]);
     for (position, voltage) in samples() {
-        let results = runs.each_mut().map(|unit| {
-            set(unit, "position", position);
-            set(unit, "voltage_applied", voltage);
-            unit.advance(T, &mut Silence).unwrap();
-            RESULTS.map(|result| get(unit, result))
+        let results = runs.each_mut().map(|model| {
+            set(model, "position", position);
+            set(model, "voltage_applied", voltage);
+            model.advance(T, &mut Silence).unwrap();
+            RESULTS.map(|result| get(model, result))
         });
         assert_eq!(results[0], results[1]);
     }
@@ -186,15 +186,15 @@ fn kalman_ignores_the_map_and_announces_its_prior() {
 
 #[test]
 fn tunable_parameters_reach_the_running_observer() {
-    let mut unit = MagneticBearingController::new();
-    set(&mut unit, "observer.kind", KALMAN);
-    unit.initialise(0.0).unwrap();
-    let deviation = |unit: &mut MagneticBearingController| {
-        (0..200).for_each(|_| unit.advance(T, &mut Silence).unwrap());
-        get(unit, "estimate.position_deviation")
+    let mut model = MagneticBearingController::new();
+    set(&mut model, "observer.kind", KALMAN);
+    model.initialise(0.0).unwrap();
+    let deviation = |model: &mut MagneticBearingController| {
+        (0..200).for_each(|_| model.advance(T, &mut Silence).unwrap());
+        get(model, "estimate.position_deviation")
     };
-    let fine = deviation(&mut unit);
-    set(&mut unit, "observer.position_noise", 1e-3);
-    unit.adopt_parameters();
-    assert!(deviation(&mut unit) > 2.0 * fine, "the filter goes on with the new noise");
+    let fine = deviation(&mut model);
+    set(&mut model, "observer.position_noise", 1e-3);
+    model.adopt_parameters();
+    assert!(deviation(&mut model) > 2.0 * fine, "the filter goes on with the new noise");
 }

@@ -1,7 +1,7 @@
-//! A master that steps both units at once hands the voltage over one step late. The observer converges all the same if
+//! A master that steps both models at once hands the voltage over one step late. The observer converges all the same if
 //! it hears the voltage that acted.
 
-use maglev_fmu::host::{ExchangeOrder, Trace, TwoUnitLoop};
+use maglev_fmu::host::{ExchangeOrder, Trace, ControlLoop};
 use maglev_fmu::package::FmiVersion::{self, Three, Two};
 use maglev_fmu_test::packages;
 
@@ -21,7 +21,7 @@ fn run(version: FmiVersion, voltage_source: f64, map: f64) -> Trace {
         &[("observer.voltage_source", voltage_source), ("observer.map", map)],
     );
     let plant = packages::instantiate(version, "MagneticBearingPlant", &[("initial.position", 0.01)]);
-    let mut bearing = TwoUnitLoop::connect(
+    let mut bearing = ControlLoop::connect(
         controller,
         plant,
         ExchangeOrder::Parallel,

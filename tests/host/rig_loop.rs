@@ -1,9 +1,9 @@
 //! The rig's loop natively and through packaged FMUs of both standards: the same bits.
 
-use maglev_fmu::host::{ExchangeOrder, TwoUnitLoop};
+use maglev_fmu::host::{ExchangeOrder, ControlLoop};
 use maglev_fmu::package::FmiVersion::{self, Three, Two};
-use maglev_fmu::unit::Silence;
-use maglev_fmu::unit::system::RIG;
+use maglev_fmu::model::Silence;
+use maglev_fmu::model::system::RIG;
 use maglev_fmu_test::closed_loop::closed_loop;
 use maglev_fmu_test::packages;
 use maglev_fmu_test::rig::{
@@ -41,8 +41,8 @@ fn natively(plant: &[(&str, f64)], controller: &[(&str, f64)]) -> Columns {
         rig.step_controller().unwrap();
         rig.actuate();
         rig.plant.continuous().expect("a plant").evaluate();
-        for ((unit, name), column) in RECORD.iter().zip(&mut columns) {
-            let value = if *unit == "plant" { get(&*rig.plant, name) } else { get(&*rig.controller, name) };
+        for ((model, name), column) in RECORD.iter().zip(&mut columns) {
+            let value = if *model == "plant" { get(&*rig.plant, name) } else { get(&*rig.controller, name) };
             column.push(value.to_bits());
         }
         rig.plant.advance(T, &mut Silence).unwrap();
@@ -54,7 +54,7 @@ fn through_fmus(
     (plant, plant_values): (FmiVersion, &[(&str, f64)]),
     (controller, controller_values): (FmiVersion, &[(&str, f64)]),
 ) -> Columns {
-    let mut rig = TwoUnitLoop::connect(
+    let mut rig = ControlLoop::connect(
         packages::instantiate(controller, "MaglevRigController", controller_values),
         packages::instantiate(plant, "MaglevRigPlant", plant_values),
         ExchangeOrder::ControllerFirst,

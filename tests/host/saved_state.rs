@@ -1,12 +1,12 @@
-//! Packaged units go on from serialised states that another instance, of any form, has written.
+//! Packaged models go on from serialised states that another instance, of any form, has written.
 
 use maglev_fmu::host::{HostError, Instance, Storage};
 use maglev_fmu::package::Form;
-use maglev_fmu::unit::system::SYSTEMS;
-use maglev_fmu::unit::variable::{Causality, Kind};
+use maglev_fmu::model::system::SYSTEMS;
+use maglev_fmu::model::variable::{Causality, Kind};
 use maglev_fmu_test::packages;
 
-/// All reals of the unit, as bits.
+/// All reals of the model, as bits.
 fn snapshot(instance: &Instance) -> Vec<u64> {
     let reals = instance.description().variables.iter().filter(|variable| variable.storage != Storage::Other);
     reals
@@ -16,8 +16,8 @@ fn snapshot(instance: &Instance) -> Vec<u64> {
 
 #[test]
 fn states_cross_instances_and_forms() {
-    for unit in SYSTEMS.iter().flat_map(|system| [system.plant, system.controller]) {
-        let description = unit.description;
+    for model in SYSTEMS.iter().flat_map(|system| [system.plant, system.controller]) {
+        let description = model.description;
         let forms = || Form::all_of(description);
         for (from, to) in forms().flat_map(|from| forms().map(move |to| (from, to))) {
             let inputs = description.variables.iter().filter(|variable| {

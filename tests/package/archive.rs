@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use maglev_fmu::package::{
     FmiVersion, Form, GenerationTime, Library, PackageError, SystemForm, build, icon_png, model_description,
 };
-use maglev_fmu::unit::system::SYSTEMS;
-use maglev_fmu::unit::{Description, StartValues, UNITS, UnitType, units};
+use maglev_fmu::model::system::SYSTEMS;
+use maglev_fmu::model::{Description, StartValues, MODELS, ModelType, models};
 use object::Architecture;
 use zip::ZipArchive;
 
@@ -29,14 +29,14 @@ fn packages(time: u32) -> BTreeMap<PathBuf, Vec<u8>> {
         .iter()
         .map(|file| (file.path.strip_prefix(&out).unwrap().to_owned(), fs::read(&file.path).unwrap()))
         .collect();
-    let forms = |unit: &UnitType| Form::all_of(unit.description).count();
-    let units = UNITS.iter().map(|unit| forms(unit)).sum::<usize>();
-    assert_eq!(packages.len(), units + SystemForm::ALL.len() * SYSTEMS.len());
+    let forms = |model: &ModelType| Form::all_of(model.description).count();
+    let models = MODELS.iter().map(|model| forms(model)).sum::<usize>();
+    assert_eq!(packages.len(), models + SystemForm::ALL.len() * SYSTEMS.len());
     // Nothing but the packages: no temporary file is left.
     let directories = SystemForm::ALL.iter().filter(|form| !form.directory().is_empty()).count();
     assert_eq!(fs::read_dir(&out).unwrap().count(), Form::ALL.len() + directories + SYSTEMS.len());
     for form in Form::ALL {
-        let suited = UNITS.iter().filter(|unit| form.edition.suits(unit.description)).count();
+        let suited = MODELS.iter().filter(|model| form.edition.suits(model.description)).count();
         assert_eq!(fs::read_dir(out.join(form.directory())).unwrap().count(), suited);
     }
     assert!(written.iter().all(|file| file.size as u64 == fs::metadata(&file.path).unwrap().len()));
@@ -59,9 +59,9 @@ fn same_inputs_give_same_bytes() {
 #[test]
 fn archives_hold_what_the_standards_name() {
     let packages = packages(TIME);
-    for unit in UNITS {
-        for form in Form::all_of(unit.description) {
-            let name = unit.description.name;
+    for model in MODELS {
+        for form in Form::all_of(model.description) {
+            let name = model.description.name;
             let bytes = &packages[&Path::new(form.directory()).join(name).with_extension("fmu")];
             let mut archive = ZipArchive::new(Cursor::new(bytes)).unwrap();
             let (platforms, own_icon) = match form.version {
@@ -71,7 +71,7 @@ fn archives_hold_what_the_standards_name() {
             let mut expected: Vec<String> =
                 platforms.map(|platform| format!("binaries/{platform}/{name}.so")).to_vec();
             expected.extend(own_icon.map(str::to_owned));
-            let in_loop = |other: &UnitType| std::ptr::eq(other, *unit);
+            let in_loop = |other: &ModelType| std::ptr::eq(other, *model);
             let loops = SYSTEMS.iter().filter(|system| in_loop(system.plant) || in_loop(system.controller));
             let diagrams: Vec<String> =
                 loops.map(|system| format!("documentation/{}.svg", system.name)).collect();
@@ -98,19 +98,19 @@ fn archives_hold_what_the_standards_name() {
             assert_eq!(names, expected);
 
             let time = Some(GenerationTime::from_epoch_seconds(TIME));
-            let description = model_description(unit.description, StartValues::TABLE, form, time);
+            let description = model_description(model.description, StartValues::TABLE, form, time);
             assert_eq!(file(&mut archive, "modelDescription.xml"), description.as_bytes());
             for icon in own_icon.into_iter().chain(["terminalsAndIcons/icon.png"]) {
                 assert!(file(&mut archive, icon).starts_with(b"\x89PNG\r\n\x1a\n"));
             }
             let page = String::from_utf8(file(&mut archive, "documentation/index.html")).unwrap();
-            for variable in unit.description.variables {
+            for variable in model.description.variables {
                 assert!(page.contains(&format!("<code>{}</code>", variable.name)), "{}", variable.name);
             }
             for diagram in &diagrams {
                 assert!(page.contains(diagram.strip_prefix("documentation/").unwrap()), "{diagram}");
             }
-            let token = form.edition.token(unit.description);
+            let token = form.edition.token(model.description);
             assert!(page.contains("2009-02-13T23:31:31Z") && page.contains(token.as_str()));
         }
     }
@@ -206,7 +206,7 @@ fn a_failed_build_leaves_the_old_package() {
     let libraries = [Library::read(&write_library(directory.path(), Architecture::X86_64)).unwrap()];
     let out = directory.path().join("dist");
     // A directory where the package belongs cannot be replaced by a file.
-    let blocked = out.join("fmi3").join(UNITS[0].description.name).with_extension("fmu");
+    let blocked = out.join("fmi3").join(MODELS[0].description.name).with_extension("fmu");
     fs::create_dir_all(blocked.join("inside")).unwrap();
     let error = build(&out, &libraries, GenerationTime::from_epoch_seconds(TIME)).unwrap_err();
     assert!(matches!(&error, PackageError::Write { path, .. } if *path == blocked), "{error}");
@@ -214,10 +214,10 @@ fn a_failed_build_leaves_the_old_package() {
 }
 
 #[test]
-fn every_unit_has_an_icon() {
-    for unit in units() {
-        icon_png(unit.description).unwrap();
+fn every_model_has_an_icon() {
+    for model in models() {
+        icon_png(model.description).unwrap();
     }
     let without = Description::new("Unknown", &[]);
-    assert!(matches!(icon_png(&without), Err(PackageError::NoIcon { unit: "Unknown" })));
+    assert!(matches!(icon_png(&without), Err(PackageError::NoIcon { model: "Unknown" })));
 }

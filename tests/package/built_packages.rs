@@ -1,4 +1,4 @@
-//! What is in packages, of this build or, of units that a test adds, as they would be, without a library; and packages with
+//! What is in packages, of this build or, of models that a test adds, as they would be, without a library; and packages with
 //! other start values, around a file that passes for a library.
 
 use std::fs::File;
@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use maglev_fmu::package::{
     Entry, FmiVersion, Form, GenerationTime, Library, SystemForm, build_with, contents, system_contents,
 };
-use maglev_fmu::unit::system::{SYSTEMS, System};
-use maglev_fmu::unit::{Description, StartValues, UNITS, UnitType};
+use maglev_fmu::model::system::{SYSTEMS, System};
+use maglev_fmu::model::{Description, StartValues, MODELS, ModelType};
 use maglev_fmu_test::packages;
 use object::Architecture;
 use tempfile::TempDir;
@@ -17,7 +17,7 @@ use zip::ZipArchive;
 
 use super::library_file::write_library;
 
-/// All packages, of some units with other start values.
+/// All packages, of some models with other start values.
 pub fn packages_with(start_values: &[(&'static Description, StartValues)]) -> TempDir {
     let directory = tempfile::tempdir().unwrap();
     let library = write_library(directory.path(), Architecture::X86_64);
@@ -28,13 +28,13 @@ pub fn packages_with(start_values: &[(&'static Description, StartValues)]) -> Te
 
 const TIME: GenerationTime = GenerationTime::from_epoch_seconds(1_234_567_890);
 
-/// A file of the package of a unit.
-pub fn unit_file(version: FmiVersion, unit: &'static UnitType, member: &str) -> String {
-    let (name, form) = (unit.description.name, Form::from(version));
-    if UNITS.iter().any(|own| std::ptr::eq(*own, unit)) {
+/// A file of the package of a model.
+pub fn model_file(version: FmiVersion, model: &'static ModelType, member: &str) -> String {
+    let (name, form) = (model.description.name, Form::from(version));
+    if MODELS.iter().any(|own| std::ptr::eq(*own, model)) {
         return text(&packages::directory().join(form.directory()).join(name).with_extension("fmu"), member);
     }
-    let entries = contents(unit.description, StartValues::TABLE, form, TIME, &[]).unwrap();
+    let entries = contents(model.description, StartValues::TABLE, form, TIME, &[]).unwrap();
     String::from_utf8(find(entries, member)).unwrap()
 }
 

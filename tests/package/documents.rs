@@ -6,9 +6,9 @@ use std::fs;
 use std::path::{Component, Path, PathBuf};
 use std::process::Command;
 
-use maglev_fmu::unit::UNITS;
-use maglev_fmu::unit::system::{SYSTEMS, System};
-use maglev_fmu::unit::variable::{Kind, Variable};
+use maglev_fmu::model::MODELS;
+use maglev_fmu::model::system::{SYSTEMS, System};
+use maglev_fmu::model::variable::{Kind, Variable};
 
 /// Most bytes of the README, which is to be read at one sitting.
 const LONGEST_README: usize = 8000;
@@ -170,9 +170,9 @@ fn every_page_is_reached_from_the_readme() {
 fn the_readme_is_short_and_names_every_model() {
     let readme = read(Path::new("README.md"));
     assert!(readme.len() <= LONGEST_README, "README.md has {} bytes of {LONGEST_README}", readme.len());
-    for unit in UNITS {
-        let link = format!("(docs/models/{}.md)", unit.description.name);
-        assert!(readme.contains(&link), "README.md does not link {}", unit.description.name);
+    for model in MODELS {
+        let link = format!("(docs/models/{}.md)", model.description.name);
+        assert!(readme.contains(&link), "README.md does not link {}", model.description.name);
     }
 }
 
@@ -217,7 +217,7 @@ fn the_wires_in_the_readme_exist() {
 }
 
 fn variables() -> impl Iterator<Item = &'static Variable> {
-    UNITS.iter().flat_map(|unit| unit.description.variables)
+    MODELS.iter().flat_map(|model| model.description.variables)
 }
 
 /// Whether some variable called `name` may be set to `value`.

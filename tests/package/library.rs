@@ -1,10 +1,10 @@
-//! A library is packed only if it is one of these units, whatever platform it is for.
+//! A library is packed only if it is one of these models, whatever platform it is for.
 
 use std::fs;
 
 use maglev_fmu::fmi::{FmiVersion, function_names};
 use maglev_fmu::package::{Library, PackageError};
-use maglev_fmu::unit::{Token, UNITS, editions_of};
+use maglev_fmu::model::{Token, MODELS, editions_of};
 use object::{Architecture, BinaryFormat};
 use proptest::prelude::*;
 
@@ -62,14 +62,14 @@ fn every_function_must_be_exported() {
 }
 
 #[test]
-fn other_processors_and_other_units_are_refused() {
+fn other_processors_and_other_models_are_refused() {
     let foreign = library(BinaryFormat::Elf, Architecture::I386, &all_functions());
     assert!(matches!(read(&foreign), Err(PackageError::UnknownPlatform { .. })));
     let mut bytes = library(BinaryFormat::Elf, Architecture::X86_64, &all_functions());
-    let name = UNITS[3].description.name;
+    let name = MODELS[3].description.name;
     let place = bytes.windows(name.len()).position(|part| part == name.as_bytes()).unwrap();
     bytes[place] = b'?';
-    assert!(matches!(read(&bytes), Err(PackageError::OtherUnits { unit, .. }) if unit == name));
+    assert!(matches!(read(&bytes), Err(PackageError::OtherModels { model, .. }) if model == name));
     // A program of the same format.
     let mut program = library(BinaryFormat::MachO, Architecture::X86_64, &all_functions());
     program[12..16].copy_from_slice(&object::macho::MH_EXECUTE.0.to_le_bytes());
@@ -79,16 +79,16 @@ fn other_processors_and_other_units_are_refused() {
 /// Guards: packages whose library refuses every token in their model descriptions.
 #[test]
 fn a_library_of_another_release_is_refused() {
-    for (unit, edition) in editions_of(UNITS.iter().copied()) {
+    for (model, edition) in editions_of(MODELS.iter().copied()) {
         let mut bytes = library(BinaryFormat::Elf, Architecture::X86_64, &all_functions());
-        let token = edition.token(unit.description);
+        let token = edition.token(model.description);
         let place = bytes.windows(Token::LENGTH).position(|part| part == token.as_str().as_bytes()).unwrap();
         // Another hexadecimal digit.
         bytes[place + 1] = if bytes[place + 1] == b'0' { b'1' } else { b'0' };
         let error = read(&bytes).unwrap_err();
-        let name = unit.description.name;
+        let name = model.description.name;
         assert!(
-            matches!(&error, PackageError::OtherRelease { unit, .. } if *unit == name),
+            matches!(&error, PackageError::OtherRelease { model, .. } if *model == name),
             "{edition:?}: {error}"
         );
         let message = error.to_string();

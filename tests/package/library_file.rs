@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use maglev_fmu::fmi::{FmiVersion, function_names};
-use maglev_fmu::unit::{UNITS, editions_of};
+use maglev_fmu::model::{MODELS, editions_of};
 use object::pe;
 use object::write::elf::{FileHeader, Sym, Writer as ElfWriter};
 use object::write::pe::{NtHeaders, Writer as PeWriter};
@@ -16,7 +16,7 @@ pub fn all_functions() -> Vec<&'static str> {
     FmiVersion::ALL.iter().flat_map(|version| function_names(*version)).copied().collect()
 }
 
-/// A library of these functions, followed by the names and tokens of all units and something to compress.
+/// A library of these functions, followed by the names and tokens of all models and something to compress.
 pub fn library(format: BinaryFormat, architecture: Architecture, functions: &[&str]) -> Vec<u8> {
     let mut bytes = match format {
         BinaryFormat::Elf => elf(architecture, functions),
@@ -24,14 +24,14 @@ pub fn library(format: BinaryFormat, architecture: Architecture, functions: &[&s
         BinaryFormat::MachO => dylib(architecture, functions),
         other => panic!("no library in the format {other:?}"),
     };
-    UNITS.iter().for_each(|unit| bytes.extend(unit.description.name.bytes()));
-    editions_of(UNITS.iter().copied())
-        .for_each(|(unit, edition)| bytes.extend(edition.token(unit.description).as_str().bytes()));
+    MODELS.iter().for_each(|model| bytes.extend(model.description.name.bytes()));
+    editions_of(MODELS.iter().copied())
+        .for_each(|(model, edition)| bytes.extend(edition.token(model.description).as_str().bytes()));
     bytes.extend((0..25_000u32).flat_map(|number| number.wrapping_mul(number).to_le_bytes()));
     bytes
 }
 
-/// Writes a library of the units for Linux to a directory.
+/// Writes a library of the models for Linux to a directory.
 pub fn write_library(directory: &Path, architecture: Architecture) -> PathBuf {
     let path = directory.join(format!("library-{architecture:?}.so"));
     fs::write(&path, library(BinaryFormat::Elf, architecture, &all_functions())).unwrap();

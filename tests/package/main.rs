@@ -11,7 +11,7 @@ mod model_description;
 mod reference_runs;
 mod related_files;
 mod start_values;
-mod system_units;
+mod system_models;
 mod systems;
 mod third_party;
 mod xml;

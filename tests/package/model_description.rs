@@ -1,11 +1,11 @@
-//! Rules of the standards that a schema does not check, on the XML of every unit.
+//! Rules of the standards that a schema does not check, on the XML of every model.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use maglev_fmu::package::{Capabilities, FmiVersion, Form, GenerationTime, model_description};
-use maglev_fmu::unit::structure::DependencyKind;
-use maglev_fmu::unit::variable::{Causality, Kind};
-use maglev_fmu::unit::{Description, Edition, StartValues, UNITS, units};
+use maglev_fmu::model::structure::DependencyKind;
+use maglev_fmu::model::variable::{Causality, Kind};
+use maglev_fmu::model::{Description, Edition, StartValues, MODELS, models};
 
 use super::xml::Element;
 
@@ -65,16 +65,16 @@ fn units_of_measure(root: &Element) -> BTreeMap<&str, Vec<&str>> {
 }
 
 fn check_all(check: impl Fn(&'static Description, Form, &Element)) {
-    for unit in units() {
-        for form in Form::all_of(unit.description) {
-            let text = model_description(unit.description, StartValues::TABLE, form, None);
-            check(unit.description, form, &Element::parse(&text));
+    for model in models() {
+        for form in Form::all_of(model.description) {
+            let text = model_description(model.description, StartValues::TABLE, form, None);
+            check(model.description, form, &Element::parse(&text));
         }
     }
 }
 
 #[test]
-fn heads_name_the_unit_and_its_token() {
+fn heads_name_the_model_and_its_token() {
     check_all(|description, form, root| {
         let (fmi_version, token) = match form.version {
             FmiVersion::Two => ("2.0", "guid"),
@@ -102,8 +102,8 @@ fn heads_name_the_unit_and_its_token() {
 #[test]
 fn packages_carry_their_time() {
     let time = Some(GenerationTime::from_epoch_seconds(1_234_567_890));
-    for form in Form::all_of(UNITS[0].description) {
-        let root = Element::parse(&model_description(UNITS[0].description, StartValues::TABLE, form, time));
+    for form in Form::all_of(MODELS[0].description) {
+        let root = Element::parse(&model_description(MODELS[0].description, StartValues::TABLE, form, time));
         assert_eq!(root.attribute("generationDateAndTime"), Some("2009-02-13T23:31:30Z"));
     }
 }
@@ -427,7 +427,7 @@ fn structure_lists_outputs_and_initial_unknowns_exactly() {
                 ),
             };
         let row = |text: &str| text.parse::<usize>().unwrap() - offset;
-        // The clock that the unit activates is an output, too; it has nothing to do with what follows.
+        // The clock that the model activates is an output, too; it has nothing to do with what follows.
         for (elements, elements_are_outputs) in [(&mut outputs, true), (&mut unknowns, false)] {
             let count = elements.len();
             elements.retain(|element| row(element.attribute(key).unwrap()) < description.variables.len());

@@ -1,11 +1,11 @@
-//! Packaged units answer the reference input that travels with them with the reference output, to the last bit.
+//! Packaged models answer the reference input that travels with them with the reference output, to the last bit.
 
 use std::collections::BTreeSet;
 use std::path::Path;
 
 use maglev_fmu::host::{Instance, Logging};
 use maglev_fmu::package::{Form, REFERENCE_INPUT, REFERENCE_OUTPUT, RELATED_FILES};
-use maglev_fmu::unit::UNITS;
+use maglev_fmu::model::MODELS;
 use maglev_fmu_test::packages;
 
 use super::xml::Element;
@@ -27,20 +27,20 @@ fn read(path: &Path) -> Table {
     Table { rows: rows.collect(), names: names[1..].to_vec() }
 }
 
-fn bits(unit: &Instance, names: &[String]) -> Vec<u64> {
-    names.iter().map(|name| unit.get_by_name(name).unwrap().to_bits()).collect()
+fn bits(model: &Instance, names: &[String]) -> Vec<u64> {
+    names.iter().map(|name| model.get_by_name(name).unwrap().to_bits()).collect()
 }
 
-fn set(unit: &mut Instance, names: &[String], values: &[f64]) {
-    names.iter().zip(values).for_each(|(name, value)| unit.set_by_name(name, *value).unwrap());
+fn set(model: &mut Instance, names: &[String], values: &[f64]) {
+    names.iter().zip(values).for_each(|(name, value)| model.set_by_name(name, *value).unwrap());
 }
 
 /// Importers differ in whether the first row of inputs is set before the end of the initialisation.
 #[test]
 fn packages_give_the_reference_output_whenever_the_first_inputs_are_set() {
-    for unit in UNITS {
-        let name = unit.description.name;
-        for form in Form::all_of(unit.description) {
+    for model in MODELS {
+        let name = model.description.name;
+        for form in Form::all_of(model.description) {
             let fmu = packages::open(form, name);
             let directory = fmu.directory().join(RELATED_FILES);
             let (inputs, outputs) =
@@ -61,7 +61,7 @@ fn packages_give_the_reference_output_whenever_the_first_inputs_are_set() {
                     );
                     if let Some((begin, values)) = inputs.rows.get(step) {
                         set(&mut instance, &inputs.names, values);
-                        instance.step(*begin, unit.description.step_size).unwrap();
+                        instance.step(*begin, model.description.step_size).unwrap();
                     }
                 }
             }
@@ -71,7 +71,7 @@ fn packages_give_the_reference_output_whenever_the_first_inputs_are_set() {
 
 #[test]
 fn the_manifest_names_files_of_the_package() {
-    let fmu = packages::open(Form::FMI2, UNITS[0].description.name);
+    let fmu = packages::open(Form::FMI2, MODELS[0].description.name);
     let directory = fmu.directory().join(RELATED_FILES);
     let manifest = Element::parse(&std::fs::read_to_string(directory.join("fmi-ls-manifest.xml")).unwrap());
     assert_eq!(manifest.attribute("fmi-ls:fmi-ls-name"), Some("org.fmi-standard.fmi-ls-ref"));

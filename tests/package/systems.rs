@@ -1,13 +1,13 @@
-//! Terminals of the units and system structure packages say what the table of systems says.
+//! Terminals of the models and system structure packages say what the table of systems says.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use maglev_fmu::package::{FmiVersion, SystemForm};
-use maglev_fmu::unit::system::{System, systems};
-use maglev_fmu::unit::units;
-use maglev_fmu::unit::variable::{Causality, Kind};
+use maglev_fmu::model::system::{System, systems};
+use maglev_fmu::model::models;
+use maglev_fmu::model::variable::{Causality, Kind};
 
-use super::built_packages::{ssp_version, system_file, unit_file};
+use super::built_packages::{ssp_version, system_file, model_file};
 use super::xml::Element;
 
 /// Variable to member of a terminal.
@@ -23,15 +23,15 @@ fn members(terminal: &Element) -> BTreeMap<&str, &str> {
 #[test]
 fn terminals_of_a_loop_fit_each_other() {
     for version in FmiVersion::ALL {
-        let terminals: BTreeMap<&str, Element> = units()
-            .map(|unit| {
-                let file = unit_file(version, unit, "terminalsAndIcons/terminalsAndIcons.xml");
-                (unit.description.name, Element::parse(&file))
+        let terminals: BTreeMap<&str, Element> = models()
+            .map(|model| {
+                let file = model_file(version, model, "terminalsAndIcons/terminalsAndIcons.xml");
+                (model.description.name, Element::parse(&file))
             })
             .collect();
         for System { name, plant, controller, sensing, actuation, .. } in systems() {
-            let [plant, controller] = [plant, controller].map(|unit| {
-                let all = terminals[unit.description.name].child("Terminals");
+            let [plant, controller] = [plant, controller].map(|model| {
+                let all = terminals[model.description.name].child("Terminals");
                 let mut found = all.children_named("Terminal");
                 found.find(|terminal| terminal.attribute("name") == Some(*name)).unwrap()
             });
@@ -89,7 +89,7 @@ fn systems_are_wired_as_the_table_says() {
         for system in systems() {
             let structure = structure(form, system);
             assert_eq!(structure.attribute("version"), Some(ssp_version(form)));
-            let [plant, controller] = [system.plant, system.controller].map(|unit| unit.description.name);
+            let [plant, controller] = [system.plant, system.controller].map(|model| model.description.name);
             let inner: BTreeSet<Wire> = wires(&structure)
                 .into_iter()
                 .filter(|[start, _, end, _]| start.is_some() && end.is_some())
@@ -148,14 +148,14 @@ fn what_the_loop_leaves_open_is_a_connector_of_the_system() {
                 all.iter().filter(|wire| wire[2].is_none()).map(|wire| (&wire[0], &wire[1])).collect();
             let ends = [(system.controller, system.sensing), (system.plant, system.actuation)];
             let of = |causality: Causality| {
-                ends.into_iter().flat_map(move |(unit, wired)| {
-                    let rows = unit.description.variables.iter();
+                ends.into_iter().flat_map(move |(model, wired)| {
+                    let rows = model.description.variables.iter();
                     let is_real = |kind| matches!(kind, Kind::Real(_));
                     let rows = rows.filter(move |row| row.causality == causality && is_real(row.kind));
                     let is_free = move |name| !wired.iter().any(|(_, input)| *input == name);
                     let rows =
                         rows.filter(move |row| row.causality == Causality::Output || is_free(row.name));
-                    rows.map(move |row| (unit.description.name, row.name))
+                    rows.map(move |row| (model.description.name, row.name))
                 })
             };
             let owned = |(element, name): (&str, &str)| (Some(element.to_owned()), Some(name.to_owned()));
@@ -186,8 +186,8 @@ fn no_variable_begins_with_the_name_of_an_element() {
         let structure = structure(SystemForm::Closed, system);
         for element in &structure.child("ssd:System").child("ssd:Elements").children {
             let name = element.attribute("name").unwrap();
-            for unit in [system.plant, system.controller] {
-                let rows = unit.description.variables.iter();
+            for model in [system.plant, system.controller] {
+                let rows = model.description.variables.iter();
                 assert!(rows.into_iter().all(|row| row.name.split('.').next() != Some(name)), "{name}");
             }
         }

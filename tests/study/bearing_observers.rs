@@ -1,4 +1,4 @@
-//! The comparison of the bearing's observers, through the packaged units.
+//! The comparison of the bearing's observers, through the packaged models.
 
 use maglev_fmu::study::claim::Verdict;
 use maglev_fmu::study::{EXPERIMENTS, Findings, Table};

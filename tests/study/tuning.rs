@@ -6,9 +6,9 @@ use maglev_fmu::study::tuning::candidate::{Candidate, ObserverKind, TABLE_3, TAB
 use maglev_fmu::study::tuning::noise_aware::NOISES;
 use maglev_fmu::study::tuning::settings::SwarmSettings;
 use maglev_fmu::study::tuning::{Objective, Tuned, tune};
-use maglev_fmu::unit::system::RIG;
-use maglev_fmu::unit::variable::Kind;
-use maglev_fmu::unit::{ClosedLoop, ExchangeOrder, Unit};
+use maglev_fmu::model::system::RIG;
+use maglev_fmu::model::variable::Kind;
+use maglev_fmu::model::{ClosedLoop, ExchangeOrder, Model};
 use maglev_fmu_test::values::{get, set};
 
 fn search(observer: ObserverKind, objective: &Objective, settings: SwarmSettings, seed: u64) -> Tuned {
@@ -67,10 +67,10 @@ fn printed_swarm_diverges() {
 }
 
 /// Sets parameters as an importer would.
-fn set_all(unit: &mut dyn Unit, parameters: &[(&str, Value<'_>)]) {
+fn set_all(model: &mut dyn Model, parameters: &[(&str, Value<'_>)]) {
     for (name, value) in parameters {
-        let (reference, variable) = unit.description().find(name).unwrap();
-        unit.values_mut()[reference] = match (variable.kind, *value) {
+        let (reference, variable) = model.description().find(name).unwrap();
+        model.values_mut()[reference] = match (variable.kind, *value) {
             (Kind::Enumeration(enumeration), Value::Text(item)) => {
                 1.0 + enumeration.items.iter().position(|(name, _)| *name == item).unwrap() as f64
             }
@@ -81,27 +81,27 @@ fn set_all(unit: &mut dyn Unit, parameters: &[(&str, Value<'_>)]) {
     }
 }
 
-/// J of (15) of the units' own loop.
-fn cost_in_the_units(tuned: &Tuned) -> f64 {
-    let mut units = ClosedLoop::of(&RIG, ExchangeOrder::ControllerFirst);
-    set_all(&mut *units.controller, &tuned.parameters);
-    units.start(0.0).unwrap();
-    units.step_size = SAMPLE_TIME;
-    let set_point = get(&*units.plant, "sensor_voltage");
+/// J of (15) of the models' own loop.
+fn cost_in_the_models(tuned: &Tuned) -> f64 {
+    let mut models = ClosedLoop::of(&RIG, ExchangeOrder::ControllerFirst);
+    set_all(&mut *models.controller, &tuned.parameters);
+    models.start(0.0).unwrap();
+    models.step_size = SAMPLE_TIME;
+    let set_point = get(&*models.plant, "sensor_voltage");
     let (mut squares, mut peaks, samples) = ([0.0; 2], [[f64::MIN; 2]; 2], 2001);
     for sample in 0..samples {
         let time = f64::from(sample) * SAMPLE_TIME;
-        set(&mut *units.controller, "reference", set_point + Reference::SineAndStep.at(time));
-        units.step_controller().unwrap();
-        let truth = ["position", "velocity"].map(|name| get(&*units.plant, name));
-        let estimate = ["estimate.position", "estimate.velocity"].map(|name| get(&*units.controller, name));
+        set(&mut *models.controller, "reference", set_point + Reference::SineAndStep.at(time));
+        models.step_controller().unwrap();
+        let truth = ["position", "velocity"].map(|name| get(&*models.plant, name));
+        let estimate = ["estimate.position", "estimate.velocity"].map(|name| get(&*models.controller, name));
         for state in 0..2 {
             squares[state] += (truth[state] - estimate[state]).powi(2);
         }
         for (peak, values) in peaks.iter_mut().zip([truth, estimate]) {
             *peak = [peak[0].max(values[0]), peak[1].max(values[1].abs())];
         }
-        units.step_plant().unwrap();
+        models.step_plant().unwrap();
     }
     let rms = squares.map(|square| (square / f64::from(samples)).sqrt());
     let overshoot = [0, 1].map(|state| f64::max(peaks[1][state] - peaks[0][state], 0.0));
@@ -109,11 +109,11 @@ fn cost_in_the_units(tuned: &Tuned) -> f64 {
 }
 
 #[test]
-fn units_reach_what_the_search_promised() {
+fn models_reach_what_the_search_promised() {
     let objective = Objective::paper();
     for observer in [ObserverKind::Linear, ObserverKind::Nonlinear] {
         let tuned = search(observer, &objective, SwarmSettings::FALLING_INERTIA, 1);
-        assert_close(cost_in_the_units(&tuned), tuned.optimum.cost, 1e-6);
+        assert_close(cost_in_the_models(&tuned), tuned.optimum.cost, 1e-6);
     }
 }
 

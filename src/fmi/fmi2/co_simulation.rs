@@ -88,7 +88,7 @@ pub unsafe extern "C-unwind" fn fmi2GetIntegerStatus(
     }
 }
 
-/// Whether the unit wants to end the simulation: never.
+/// Whether the model wants to end the simulation: never.
 ///
 /// # Safety
 /// A live handle, used by one thread at a time; `value` is null or writable.

@@ -67,7 +67,7 @@ pub const NEW_DISCRETE_STATES: Function = Function::new("fmi2NewDiscreteStates",
 pub const ENTER_CONTINUOUS_TIME_MODE: Function = Function::new("fmi2EnterContinuousTimeMode", &[EventMode]);
 pub const COMPLETED_INTEGRATOR_STEP: Function =
     Function::new("fmi2CompletedIntegratorStep", &[ContinuousTimeMode]);
-/// In event mode for pure discrete-time units only (condition 8), which no unit is.
+/// In event mode for pure discrete-time models only (condition 8), which no model is.
 pub const SET_TIME: Function = Function::new("fmi2SetTime", &[ContinuousTimeMode]);
 pub const SET_CONTINUOUS_STATES: Function = Function::new("fmi2SetContinuousStates", &[ContinuousTimeMode]);
 pub const GET_DERIVATIVES: Function = Function::new("fmi2GetDerivatives", EVALUABLE);

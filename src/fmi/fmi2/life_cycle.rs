@@ -45,7 +45,7 @@ pub unsafe extern "C-unwind" fn fmi2SetDebugLogging(
     }
 }
 
-/// Makes an instance of the unit that `guid` selects; null and a log message if there is none.
+/// Makes an instance of the model that `guid` selects; null and a log message if there is none.
 ///
 /// # Safety
 /// Strings are null or end with NUL; `functions` is null or valid, and its logger stays callable while the instance
@@ -93,7 +93,7 @@ pub unsafe extern "C" fn fmi2FreeInstance(component: fmi2Component) {
     unsafe { free(component) }
 }
 
-/// Start and stop time of the experiment \[s\]; the tolerance has no meaning for a unit solved in closed form.
+/// Start and stop time of the experiment \[s\]; the tolerance has no meaning for a model solved in closed form.
 ///
 /// # Safety
 /// A live handle, used by one thread at a time.

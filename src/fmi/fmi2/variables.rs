@@ -6,7 +6,7 @@ use super::types::*;
 use crate::fmi::FmiVersion;
 use crate::fmi::access::DataType;
 use crate::fmi::boundary::{enter, enter_to_copy, input, output};
-use crate::unit::variable::Kind;
+use crate::model::variable::Kind;
 
 const REAL: DataType =
     DataType { name: "a Real", carries: |kind| matches!(kind, Kind::Real(_)), standard: FmiVersion::Two };
@@ -66,6 +66,6 @@ accessors!(enter, fmi2GetInteger GET_INTEGER, fmi2SetInteger SET_INTEGER, fmi2In
     |value| value as fmi2Integer, f64::from);
 accessors!(enter, fmi2GetBoolean GET_BOOLEAN, fmi2SetBoolean SET_BOOLEAN, fmi2Boolean, BOOLEAN,
     |value| fmi2Boolean::from(value != 0.0), |value| f64::from(u8::from(value != FMI2_FALSE)));
-// No unit has strings, so nothing is ever converted.
+// No model has strings, so nothing is ever converted.
 accessors!(enter, fmi2GetString GET_STRING, fmi2SetString SET_STRING, fmi2String, STRING,
     |_| core::ptr::null(), |_| 0.0);

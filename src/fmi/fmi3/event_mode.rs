@@ -13,7 +13,7 @@ pub unsafe extern "C-unwind" fn fmi3EnterEventMode(instance: fmi3Instance) -> fm
     unsafe { enter(instance, &may::ENTER_EVENT_MODE, |instance| instance.enter_event_mode()) }
 }
 
-/// Discrete transitions of an event; of a sampled unit the tick that is due.
+/// Discrete transitions of an event; of a sampled model the tick that is due.
 ///
 /// # Safety
 /// A live handle, used by one thread at a time; the results are null or writable.

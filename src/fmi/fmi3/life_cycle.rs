@@ -40,8 +40,8 @@ pub unsafe extern "C-unwind" fn fmi3SetDebugLogging(
     }
 }
 
-/// Makes a co-simulation instance of the unit that `token` selects; null and a log message if there is none, or if
-/// events are wanted of a unit that has none.
+/// Makes a co-simulation instance of the model that `token` selects; null and a log message if there is none, or if
+/// events are wanted of a model that has none.
 ///
 /// # Safety
 /// Strings are null or end with NUL; `required_intermediate_variables` is null or holds as many references as said; the
@@ -94,7 +94,7 @@ pub unsafe extern "C-unwind" fn fmi3InstantiateCoSimulation(
     }
 }
 
-/// Makes a model-exchange instance of the unit that `token` selects; null and a log message if there is none or if it
+/// Makes a model-exchange instance of the model that `token` selects; null and a log message if there is none or if it
 /// is a sampled one.
 ///
 /// # Safety
@@ -123,7 +123,7 @@ pub unsafe extern "C-unwind" fn fmi3InstantiateModelExchange(
     }
 }
 
-/// Makes an instance of the sampled unit that `token` selects for a scheduler; null and a log message if there is none.
+/// Makes an instance of the sampled model that `token` selects for a scheduler; null and a log message if there is none.
 ///
 /// # Safety
 /// As [`fmi3InstantiateCoSimulation`].
@@ -171,7 +171,7 @@ pub unsafe extern "C" fn fmi3FreeInstance(instance: fmi3Instance) {
     unsafe { free(instance) }
 }
 
-/// Start and stop time of the experiment \[s\]; the tolerance has no meaning for a unit solved in closed form.
+/// Start and stop time of the experiment \[s\]; the tolerance has no meaning for a model solved in closed form.
 ///
 /// # Safety
 /// A live handle, used by one thread at a time.

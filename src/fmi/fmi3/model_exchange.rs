@@ -15,7 +15,7 @@ pub unsafe extern "C-unwind" fn fmi3EnterContinuousTimeMode(instance: fmi3Instan
     }
 }
 
-/// Not needed, as the model description says: no unit has step events.
+/// Not needed, as the model description says: no model has step events.
 ///
 /// # Safety
 /// A live handle, used by one thread at a time; the results are null or writable.

@@ -30,7 +30,7 @@ not_offered! { "providesPerElementDependencies = false":
         _kinds: *mut fmi3DependencyKind, _count: usize
     );
 }
-not_offered! { "the unit has no structural parameters":
+not_offered! { "the model has no structural parameters":
     ENTER_CONFIGURATION_MODE fmi3EnterConfigurationMode();
     EXIT_CONFIGURATION_MODE fmi3ExitConfigurationMode();
 }

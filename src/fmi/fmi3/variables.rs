@@ -7,7 +7,7 @@ use crate::fmi::CallError;
 use crate::fmi::FmiVersion;
 use crate::fmi::access::DataType;
 use crate::fmi::boundary::{enter, enter_to_copy, input, output};
-use crate::unit::variable::Kind;
+use crate::model::variable::Kind;
 
 /// All variables are scalars: one value per reference.
 #[inline]

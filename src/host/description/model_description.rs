@@ -13,13 +13,13 @@ pub struct CoSimulation {
     pub model_identifier: String,
     /// Communication steps may differ in size.
     pub can_handle_variable_step: bool,
-    /// Internal step of the unit in seconds, FMI 3.0 only.
+    /// Internal step of the model in seconds, FMI 3.0 only.
     pub fixed_internal_step_size: Option<f64>,
-    /// The unit's state can be saved and restored.
+    /// The model's state can be saved and restored.
     pub can_get_and_set_state: bool,
-    /// The unit knows event mode, FMI 3.0 only; the host does not use it.
+    /// The model knows event mode, FMI 3.0 only; the host does not use it.
     pub has_event_mode: bool,
-    /// The unit is a front end to a program that has to be installed.
+    /// The model is a front end to a program that has to be installed.
     pub needs_execution_tool: bool,
     /// At most one instance per process.
     pub only_one_instance_per_process: bool,

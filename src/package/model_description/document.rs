@@ -3,9 +3,9 @@
 use super::{fmi2, fmi3};
 use crate::package::xml::{attribute, document, optional, origin};
 use crate::package::{FmiVersion, Form, GenerationTime};
-use crate::unit::{Description, StartValues};
+use crate::model::{Description, StartValues};
 
-/// The model description of a unit in one form. `time` is left out of the file that is checked in.
+/// `modelDescription.xml` of a model in one form. `time` is left out of the file that is checked in.
 pub fn model_description(
     description: &Description,
     start_values: &StartValues,

@@ -9,8 +9,8 @@ use super::shared_elements::{
 };
 use crate::package::Capabilities;
 use crate::package::xml::{Attribute, Writer, attribute, element, empty_element, optional};
-use crate::unit::variable::Kind;
-use crate::unit::{Description, Edition, StartValues};
+use crate::model::variable::Kind;
+use crate::model::{Description, Edition, StartValues};
 
 /// Place of the first variable.
 const FIRST: usize = 1;
@@ -26,7 +26,7 @@ pub fn content(writer: &mut Writer, description: &Description, start_values: &St
     model_structure(writer, description)
 }
 
-/// `ModelExchange` (section 3.3.1) of a unit that offers it, and `CoSimulation` (section 4.3.1).
+/// `ModelExchange` (section 3.3.1) of a model that offers it, and `CoSimulation` (section 4.3.1).
 fn interfaces(writer: &mut Writer, description: &Description) -> io::Result<()> {
     let can = Capabilities::of(description, Edition::Plain);
     let identity = [

@@ -9,9 +9,9 @@ use super::shared_elements::{
 };
 use crate::package::Capabilities;
 use crate::package::xml::{Attribute, Writer, attribute, element, empty_element, optional};
-use crate::unit::sampled::{ClockVariable, SAMPLE_TIME};
-use crate::unit::variable::Kind;
-use crate::unit::{Description, Edition, StartValues};
+use crate::model::sampled::{ClockVariable, SAMPLE_TIME};
+use crate::model::variable::Kind;
+use crate::model::{Description, Edition, StartValues};
 
 /// Value reference of the first variable.
 const FIRST: usize = 0;
@@ -32,7 +32,7 @@ pub fn content(
     model_structure(writer, description, edition)
 }
 
-/// `ModelExchange` (section 3.4) and `ScheduledExecution` (section 5.4) of a unit that offers them, and `CoSimulation`
+/// `ModelExchange` (section 3.4) and `ScheduledExecution` (section 5.4) of a model that offers them, and `CoSimulation`
 /// (section 4.4).
 fn interfaces(writer: &mut Writer, description: &Description, edition: Edition) -> io::Result<()> {
     let can = Capabilities::of(description, edition);
@@ -145,7 +145,7 @@ fn input_clock(
     empty_element(writer, "Clock", attributes)
 }
 
-/// A `Clock` that the unit activates when one of the input clocks ticks: it is bound to them by the attribute `clocks`,
+/// A `Clock` that the model activates when one of the input clocks ticks: it is bound to them by the attribute `clocks`,
 /// and may be asked for at their ticks only.
 fn output_clock(
     writer: &mut Writer,

@@ -1,4 +1,4 @@
-//! `modelDescription.xml` of FMI 2.0 and FMI 3.0, and `terminalsAndIcons.xml`, written from a unit's variable table.
+//! `modelDescription.xml` of FMI 2.0 and FMI 3.0, and `terminalsAndIcons.xml`, written from a model's variable table.
 
 mod document;
 mod fmi2;

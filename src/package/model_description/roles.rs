@@ -2,9 +2,9 @@
 
 use crate::package::Capabilities;
 use crate::package::xml::real;
-use crate::unit::structure::DependencyKind;
-use crate::unit::variable::{Causality, Kind, Variability, Variable};
-use crate::unit::{Description, Edition};
+use crate::model::structure::DependencyKind;
+use crate::model::variable::{Causality, Kind, Variability, Variable};
+use crate::model::{Description, Edition};
 
 /// The attribute `causality`.
 pub fn causality(variable: &Variable) -> &'static str {
@@ -49,7 +49,7 @@ pub fn range(variable: &Variable) -> [Option<String>; 2] {
 }
 
 /// FMI 3.0, attribute `intermediateUpdate`: whether an importer may give the variable a value within a step. A sampled
-/// unit calls the importer back before each tick within a step, which then reads its continuous inputs.
+/// model calls the importer back before each tick within a step, which then reads its continuous inputs.
 pub fn may_be_set_within_a_step(description: &Description, variable: &Variable) -> bool {
     Capabilities::of(description, Edition::Plain).provides_intermediate_update
         && (variable.causality, variable.variability) == (Causality::Input, Variability::Continuous)
@@ -135,7 +135,7 @@ impl Dependencies {
 }
 
 /// Value references of all outputs, calculated parameters, continuous states and derivatives, which are unknown until
-/// the unit is initialised, with what each follows from. Other local variables are not listed.
+/// the model is initialised, with what each follows from. Other local variables are not listed.
 pub fn initial_unknowns(description: &Description) -> impl Iterator<Item = (usize, Dependencies)> {
     let is_state = |index| description.continuous_states().any(|(state, _)| state == index);
     let variables = description.variables.iter().enumerate();

@@ -1,12 +1,12 @@
 //! `terminalsAndIcons.xml` of FMI 3.0 (text of 3.0.2, section 2.4.9): where the icon lies in a diagram, and the plug
-//! that fits the other unit of the loop. FMI 2.0 (text of 2.0.5, section 2.3) takes the same file.
+//! that fits the other model of the loop. FMI 2.0 (text of 2.0.5, section 2.3) takes the same file.
 
 use std::io;
 
 use crate::package::FmiVersion;
 use crate::package::plug::Plug;
 use crate::package::xml::{Writer, attribute, document, element, empty_element};
-use crate::unit::Description;
+use crate::model::Description;
 
 /// The document `fmiTerminalsAndIcons`.
 pub fn terminals_and_icons(description: &Description) -> String {
@@ -35,9 +35,9 @@ fn graphical_representation(writer: &mut Writer) -> io::Result<()> {
     })
 }
 
-/// `Terminal` (section 2.4.9.2): a plug of the unit.
+/// `Terminal` (section 2.4.9.2): a plug of the model.
 fn terminal(writer: &mut Writer, description: &Description, plug: &Plug) -> io::Result<()> {
-    let ends = [plug.system.plant, plug.system.controller].map(|unit| unit.description.name);
+    let ends = [plug.system.plant, plug.system.controller].map(|model| model.description.name);
     let other = if ends[0] == description.name { ends[1] } else { ends[0] };
     let attributes = [
         attribute("name", plug.system.name),

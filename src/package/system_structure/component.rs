@@ -1,35 +1,35 @@
-//! The units of a system.
+//! The models of a system.
 
 use super::form::SystemForm;
-use crate::unit::UnitType;
-use crate::unit::system::System;
-use crate::unit::variable::{Causality, Kind, Variable};
+use crate::model::ModelType;
+use crate::model::system::System;
+use crate::model::variable::{Causality, Kind, Variable};
 
-/// Instance of a unit in a system.
+/// Instance of a model in a system.
 pub struct Component {
-    /// The unit's. Importers that cut names at dots would take `controller.kp` for a variable of `controller`.
+    /// The model's. Importers that cut names at dots would take `controller.kp` for a variable of `controller`.
     pub name: &'static str,
-    pub unit: &'static UnitType,
-    /// Wires that end here: output of the other unit and own input.
+    pub model: &'static ModelType,
+    /// Wires that end here: output of the other model and own input.
     pub wired: &'static [(&'static str, &'static str)],
 }
 
 impl Component {
     /// Controller and plant, in the order in which a master that steps one after the other should take them.
     pub fn all_of(system: &System) -> [Self; 2] {
-        [(system.controller, system.sensing), (system.plant, system.actuation)].map(|(unit, wired)| Self {
-            name: unit.description.name,
-            unit,
+        [(system.controller, system.sensing), (system.plant, system.actuation)].map(|(model, wired)| Self {
+            name: model.description.name,
+            model,
             wired,
         })
     }
 
-    /// Path of the unit in the package of the system.
-    pub fn unit_path(&self) -> String {
+    /// Path of the model in the package of the system.
+    pub fn model_path(&self) -> String {
         format!("resources/{}.fmu", self.name)
     }
 
-    /// Path of the unit's parameter set in the package of the system.
+    /// Path of the model's parameter set in the package of the system.
     pub fn parameters_path(&self) -> String {
         format!("resources/{}.ssv", self.name)
     }
@@ -47,7 +47,7 @@ impl Component {
         self.variables().filter(|variable| variable.causality == Causality::Input && !self.is_wired(variable))
     }
 
-    /// Outputs that the system passes on: what the unit computes in continuous quantities.
+    /// Outputs that the system passes on: what the model computes in continuous quantities.
     pub fn shown_outputs(&self) -> impl Iterator<Item = &'static Variable> {
         self.variables().filter(|variable| {
             variable.causality == Causality::Output && matches!(variable.kind, Kind::Real(_))
@@ -56,7 +56,7 @@ impl Component {
 
     /// Variables of the types that every importer has.
     fn variables(&self) -> impl Iterator<Item = &'static Variable> + use<> {
-        let variables = self.unit.description.variables.iter();
+        let variables = self.model.description.variables.iter();
         variables.filter(|variable| !matches!(variable.kind, Kind::Enumeration(_)))
     }
 

@@ -6,7 +6,7 @@ use super::component::Component;
 use super::form::SystemForm;
 use super::type_definitions::data_type;
 use crate::package::xml::{Writer, attribute, element, empty_element, optional};
-use crate::unit::variable::{Causality, Variable};
+use crate::model::variable::{Causality, Variable};
 
 /// A variable and the name of its connector.
 type Named = (String, &'static Variable);
@@ -18,7 +18,7 @@ pub fn component_connectors(writer: &mut Writer, component: &Component, form: Sy
     connectors(writer, inputs, outputs, form)
 }
 
-/// `ssd:Connectors` of the system: the inputs that the loop leaves open, and what both units compute in continuous
+/// `ssd:Connectors` of the system: the inputs that the loop leaves open, and what both models compute in continuous
 /// quantities.
 pub fn system_connectors(
     writer: &mut Writer,

@@ -9,8 +9,8 @@ use crate::package::contents::{Entry, owned};
 use crate::package::loop_diagram::diagram_name;
 use crate::package::loop_diagram::loop_diagram;
 use crate::package::{self, Form, GenerationTime, Library, PackageError, archive};
-use crate::unit::system::System;
-use crate::unit::{Description, StartValues};
+use crate::model::system::System;
+use crate::model::{Description, StartValues};
 
 /// All files of the package of one system, sorted by path. `start_values` are those that somebody wants other than
 /// the system's.
@@ -31,17 +31,17 @@ pub fn contents(
         ),
     ];
     for component in Component::all_of(system) {
-        let description = component.unit.description;
+        let description = component.model.description;
         let mut values = system
             .start_values(description)
             .map_err(|source| PackageError::SystemStart { system: system.name, source })?;
-        if let Some((_, wanted)) = start_values.iter().find(|(unit, _)| std::ptr::eq(*unit, description)) {
+        if let Some((_, wanted)) = start_values.iter().find(|(model, _)| std::ptr::eq(*model, description)) {
             values = values
                 .overridden_by(wanted)
                 .map_err(|source| PackageError::SystemStart { system: system.name, source: source.into() })?;
         }
-        let unit = unit_package(description, &values, form.of_units(), time, libraries)?;
-        entries.push(Entry::document(component.unit_path(), unit.into()));
+        let model = model_package(description, &values, form.of_models(), time, libraries)?;
+        entries.push(Entry::document(component.model_path(), model.into()));
         let parameters = parameter_set(system, description, &values, form, time);
         entries.push(Entry::document(component.parameters_path(), owned(parameters)));
     }
@@ -49,8 +49,8 @@ pub fn contents(
     Ok(entries)
 }
 
-/// The package of a unit as it goes into a system.
-fn unit_package(
+/// The package of a model as it goes into a system.
+fn model_package(
     description: &'static Description,
     start_values: &StartValues,
     form: Form,

@@ -9,7 +9,7 @@ use super::form::SystemForm;
 use super::type_definitions::{self, units};
 use crate::package::GenerationTime;
 use crate::package::xml::{Writer, attribute, document, element, empty_element, origin};
-use crate::unit::system::System;
+use crate::model::system::System;
 
 /// Namespace of the elements with the prefix `ssd`.
 const NAMESPACE: &str = "http://ssp-standard.org/SSP1/SystemStructureDescription";
@@ -41,7 +41,7 @@ fn system_element(
     components: &[Component; 2],
     form: SystemForm,
 ) -> io::Result<()> {
-    let [plant, controller] = [system.plant, system.controller].map(|unit| unit.description.name);
+    let [plant, controller] = [system.plant, system.controller].map(|model| model.description.name);
     let attributes =
         [attribute("name", system.name), attribute("description", format!("{plant} with {controller}"))];
     element(writer, "ssd:System", attributes, |writer| {
@@ -66,9 +66,9 @@ fn component_element(
 ) -> io::Result<()> {
     let attributes = [
         attribute("name", component.name),
-        attribute("description", component.unit.description.summary),
+        attribute("description", component.model.description.summary),
         attribute("type", "application/x-fmu-sharedlibrary"),
-        attribute("source", component.unit_path()),
+        attribute("source", component.model_path()),
         attribute("implementation", "CoSimulation"),
     ];
     let left = 300 * column;

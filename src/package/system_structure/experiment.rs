@@ -4,7 +4,7 @@
 use std::io;
 
 use crate::package::xml::{Writer, attribute, element, empty_element, real};
-use crate::unit::System;
+use crate::model::System;
 
 /// Namespace of libcosim's annotation.
 pub const COSIM_NAMESPACE: &str = "http://opensimulationplatform.com/SSP/OSPAnnotations";
@@ -28,7 +28,7 @@ pub fn default_experiment(writer: &mut Writer, system: &System) -> io::Result<()
 /// What OMSimulator reads, on the system.
 pub fn system_annotations(writer: &mut Writer, system: &System) -> io::Result<()> {
     let master = [
-        // OMSimulator's name of the master that steps all units, then exchanges.
+        // OMSimulator's name of the master that steps all models, then exchanges.
         attribute("description", "oms-ma"),
         attribute("stepSize", real(system.step_size())),
         // Read, though a fixed step does not use it.

@@ -1,7 +1,7 @@
 //! The forms in which a system is packaged.
 
 use crate::package::Form;
-use crate::unit::variable::Kind;
+use crate::model::variable::Kind;
 
 /// What a system is packaged for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,7 +11,7 @@ pub enum SystemForm {
     Closed,
     /// SSP 1.0 with connectors of the system.
     Driven,
-    /// SSP 2.0 with connectors of the system, and with units for FMI 3.0, which SSP 1.0 does not know.
+    /// SSP 2.0 with connectors of the system, and with models for FMI 3.0, which SSP 1.0 does not know.
     Two,
 }
 
@@ -35,8 +35,8 @@ impl SystemForm {
         }
     }
 
-    /// The form in which the units of the system are packaged.
-    pub fn of_units(self) -> Form {
+    /// The form in which the models of the system are packaged.
+    pub fn of_models(self) -> Form {
         match self {
             Self::Closed | Self::Driven => Form::FMI2,
             Self::Two => Form::FMI3,

@@ -1,7 +1,7 @@
 //! System structure packages (SSP 1.0.1 and 2.0): a plant and its controller, wired, ready to run.
 //!
-//! Importers step both units at once and then exchange, most start their wires at zero, and few apply the parameter
-//! sets that a package binds. So the start values of [`System::start_values`] are inside the packaged units, which are
+//! Importers step both models at once and then exchange, most start their wires at zero, and few apply the parameter
+//! sets that a package binds. So the start values of [`System::start_values`] are inside the packaged models, which are
 //! not those that stand alone. An input is a connector only if something is connected to it, for not every importer
 //! takes others. Prefixes of namespaces are those of the standard's text; not every importer
 //! resolves others.

@@ -7,14 +7,14 @@ use super::form::SystemForm;
 use super::type_definitions::{self, data_type, units};
 use crate::package::GenerationTime;
 use crate::package::xml::{attribute, document, element, origin};
-use crate::unit::system::System;
-use crate::unit::variable::{Causality, Kind, Variable};
-use crate::unit::{Description, StartValues};
+use crate::model::system::System;
+use crate::model::variable::{Causality, Kind, Variable};
+use crate::model::{Description, StartValues};
 
 /// Namespace of the elements with the prefix `ssv`.
 const NAMESPACE: &str = "http://ssp-standard.org/SSP1/SystemStructureParameterValues";
 
-/// The document `ssv:ParameterSet` of a unit.
+/// The document `ssv:ParameterSet` of a model.
 pub fn parameter_set(
     system: &System,
     description: &Description,
@@ -27,7 +27,7 @@ pub fn parameter_set(
         attribute("xmlns:ssv", NAMESPACE),
         attribute("xmlns:ssc", type_definitions::NAMESPACE),
         attribute("version", form.version()),
-        // The same for both units: importers apply sets of one name together.
+        // The same for both models: importers apply sets of one name together.
         attribute("name", system.name),
         attribute("description", summary),
     ];

@@ -15,7 +15,7 @@ const TICKS: u32 = 20_000;
 /// The fastest of some repetitions is what the machine can do.
 const REPETITIONS: u32 = 7;
 
-/// Time of a tick in the packaged unit \[s\].
+/// Time of a tick in the packaged model \[s\].
 fn tick(packages: &LoopPackages, observer: &str) -> Result<f64, StudyError> {
     // Something to work on: the current that carries the ball, and a ripple.
     let currents: Vec<f64> = (0..1000).map(|k| 0.8 + 0.1 * (f64::from(k) * 0.02).sin()).collect();

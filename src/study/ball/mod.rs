@@ -13,7 +13,7 @@ use std::path::Path;
 use super::loop_packages::LoopPackages;
 use super::sweep::part;
 use super::{Findings, Progress, StudyError};
-use crate::unit::system::BALL;
+use crate::model::system::BALL;
 use runs::Runs;
 
 const PROVENANCE: &[&str] = &[
@@ -28,7 +28,7 @@ const PROVENANCE: &[&str] = &[
              a typical laboratory rig (84.4 g, 2.52 Ohm, 5 mm), gains, filters, references and initial \
              errors. What was reproduced are therefore the kinds of behaviour that the text reports, not \
              its numbers.",
-    "The loop is sampled at 0.1 ms and the plant integrated inside its unit. Numbers of the \
+    "The loop is sampled at 0.1 ms and the plant integrated inside its model. Numbers of the \
              continuous loop stand beside where they are known; they come from the same equations \
              integrated without sampling.",
 ];

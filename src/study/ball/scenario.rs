@@ -1,4 +1,4 @@
-//! One run of the levitated ball's control loop through the packaged units.
+//! One run of the levitated ball's control loop through the packaged models.
 
 use crate::host::Value;
 use crate::plant::levitated_ball::LevitatedBall;

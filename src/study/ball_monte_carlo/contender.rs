@@ -16,7 +16,7 @@ pub struct DremSetting {
 }
 
 impl DremSetting {
-    /// The start values of the unit, without adaptation.
+    /// The start values of the model, without adaptation.
     pub const FROZEN: Self = Self {
         prefilters: [100.0, 300.0],
         filters: [10.0, 25.0, 60.0, 150.0],
@@ -71,7 +71,7 @@ impl Contender {
         }
     }
 
-    /// A Newton variant with the unit's start values.
+    /// A Newton variant with the model's start values.
     pub fn newton(name: &'static str, parameters: &[Parameter<'static>]) -> Self {
         let mut all = vec![("observer.startup_hold", Value::Real(0.02))];
         all.extend_from_slice(parameters);

@@ -14,7 +14,7 @@ use super::loop_packages::LoopPackages;
 use super::sweep::part;
 use super::{Findings, Progress, StudyError};
 use crate::host::Value;
-use crate::unit::system::BALL;
+use crate::model::system::BALL;
 use campaign::Campaign;
 use contender::Contender;
 use spread::SPREADS;
@@ -25,9 +25,9 @@ const PROVENANCE: &[&str] = &[
              equations and numbers are lost in the text at hand: the regression is a valid one of the \
              announced kind, every numeric parameter is assumed or tuned. The spreads are assumed as \
              well.",
-    "Each run lasts 4 s through the packaged units, errors are scored from 2 s on, and a run is \
+    "Each run lasts 4 s through the packaged models, errors are scored from 2 s on, and a run is \
              lost as soon as the ball touches the magnet or the lower stop. The Newton variants run at \
-             0.2 ms with the unit's gains, which were tuned on runs like these; DREM runs at 0.1 ms, as \
+             0.2 ms with the model's gains, which were tuned on runs like these; DREM runs at 0.1 ms, as \
              it cannot do with less, with the setting that a search with exact parameters found best for \
              the noise and the reference. \"No adaptation\" is DREM with gamma = 0: it shows what \
              survival alone is worth.",

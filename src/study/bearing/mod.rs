@@ -10,7 +10,7 @@ use super::loop_packages::LoopPackages;
 use super::run::Run;
 use super::sweep::{indices, part, sweep};
 use super::{Findings, Progress, StudyError};
-use crate::unit::system::BEARING;
+use crate::model::system::BEARING;
 use scenario::{Scenario, simulate};
 
 /// Simulation time of Table 1 \[s\].

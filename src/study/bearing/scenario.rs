@@ -1,4 +1,4 @@
-//! One run of the bearing's control loop through the packaged units.
+//! One run of the bearing's control loop through the packaged models.
 
 use super::SAMPLE_TIME;
 use crate::host::Value;

@@ -7,7 +7,7 @@ use crate::study::loop_packages::{LoopPackages, Parameter};
 use crate::study::metrics::root_mean_square;
 use crate::study::run::Run;
 
-/// An observer with its parameters of the controller unit.
+/// An observer with its parameters of the controller model.
 pub struct Contender {
     pub name: &'static str,
     pub parameters: &'static [Parameter<'static>],

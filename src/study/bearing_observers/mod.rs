@@ -12,7 +12,7 @@ use std::path::Path;
 use super::loop_packages::LoopPackages;
 use super::sweep::part;
 use super::{Findings, Progress, StudyError};
-use crate::unit::system::BEARING;
+use crate::model::system::BEARING;
 use comparison::Comparison;
 
 /// Standard deviations of the position sensor \[m\].

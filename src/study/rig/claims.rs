@@ -44,7 +44,7 @@ fn simulation_row(table: &Table5) -> Claim {
         .measured("NESO over LESO (printed 1.1288)", nonlinear / linear, "1")
         .judged(
             peak(off) <= 0.01,
-            "Within 1 % through the packaged units in this configuration, found by search: position in \
+            "Within 1 % through the packaged models in this configuration, found by search: position in \
              metres, estimates from zero, at rest at 8.5 mm, 2 s, one Runge-Kutta step per ms, rms e1. It \
              is nothing but the start-up transient, x0 sqrt(c / T_sim); neither x0 nor T_sim is printed, so \
              only the ratio, which depends on neither, is evidence.",

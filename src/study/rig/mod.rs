@@ -16,7 +16,7 @@ use super::run::Run;
 use super::sweep::part;
 use super::{Findings, Progress, StudyError, Summary};
 use crate::host::Value;
-use crate::unit::system::RIG as SYSTEM;
+use crate::model::system::RIG as SYSTEM;
 use observers::{KINDS, PRINTED_INPUT_GAIN, holding, interpolating};
 use ranking::{Comparison, PRINTED_EXPERIMENT, PRINTED_SIMULATION, Start, Table5, both, compare, start_up};
 use recording::Reference;
@@ -30,7 +30,7 @@ const PROVENANCE: &[&str] = &[
              pictures that were not at hand; their form follows the words around them and the standard \
              works (Han, Gao). Assumed: the objective's form, T = 1 ms, metres or volts, all that is not \
              printed about the runs. From the rig's manual: the sensor.",
-    "The loop is the rig under its digital PID, through the packaged units; the searches run \
+    "The loop is the rig under its digital PID, through the packaged models; the searches run \
              natively over a recording of the same loop. Errors are scored at every millisecond, the \
              first sample included.",
 ];

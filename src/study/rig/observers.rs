@@ -1,4 +1,4 @@
-//! The paper's two observers as parameters of the controller unit.
+//! The paper's two observers as parameters of the controller model.
 
 use super::simulation::Measurement;
 use crate::host::Value;
@@ -9,7 +9,7 @@ pub const NAMES: [&str; 2] = ["LESO", "NESO"];
 /// b of Tables 3 and 4.
 pub const PRINTED_INPUT_GAIN: f64 = 1.0;
 
-/// Items of `observer.kind`: LESO of Table 3 and NESO of Table 4, which are the unit's start values.
+/// Items of `observer.kind`: LESO of Table 3 and NESO of Table 4, which are the model's start values.
 pub const KINDS: [Parameter<'static>; 2] =
     [("observer.kind", Value::Text("linear")), ("observer.kind", Value::Text("nonlinear"))];
 

@@ -1,8 +1,8 @@
-//! The paper's experiment without units: the rig under its digital PID, as a recording that observers are run over.
+//! The paper's experiment without models: the rig under its digital PID, as a recording that observers are run over.
 //!
-//! Voltage held between samples; the ball moves by ten Runge-Kutta steps per sample. What the units compute for the
+//! Voltage held between samples; the ball moves by ten Runge-Kutta steps per sample. What the models compute for the
 //! same loop agrees to some ten digits (see the experiment's claims); tuning needs thousands of passes over the data, and
-//! table 5 interpolates the measurement, which no sampled unit can do.
+//! table 5 interpolates the measurement, which no sampled model can do.
 
 use crate::controller::digital_pid::{Derivative, DigitalPid, PidSettings};
 use crate::plant::maglev_rig::{MaglevRig, PositionSensor, State};

@@ -1,4 +1,4 @@
-//! One run of the rig's control loop through the packaged units.
+//! One run of the rig's control loop through the packaged models.
 
 use super::recording::{RIG, Reference, SAMPLE_TIME, SENSOR, SET_POINT};
 use crate::host::Value;
@@ -8,7 +8,7 @@ use crate::study::loop_packages::{LoopPackages, Parameter};
 use crate::study::metrics::{difference, root_mean_square};
 use crate::study::run::Run;
 
-/// Conditions of a run; everything else keeps the units' start values.
+/// Conditions of a run; everything else keeps the models' start values.
 #[derive(Clone, Debug)]
 pub struct Scenario {
     /// Where the ball rests at first and is to stay \[m\].

@@ -10,7 +10,7 @@ use std::path::Path;
 use super::loop_packages::LoopPackages;
 use super::sweep::part;
 use super::{Findings, Progress, StudyError, Summary};
-use crate::unit::system::RIG as SYSTEM;
+use crate::model::system::RIG as SYSTEM;
 use contenders::{Contender, TESTS, contenders, scores};
 
 const PROVENANCE: &[&str] = &[
@@ -19,8 +19,8 @@ const PROVENANCE: &[&str] = &[
      acceleration as third state, and the Newton observer of the magnetic bearing's paper, here on the rig's model, without \
      and with that acceleration. The observer of the levitated ball's paper needs the coil's flux dynamics, which the rig's \
      current loop hides; it has no place here.",
-    "The pushed loops and the table of starts come from the packaged units; the comparison of observers and the trade-off \
-     run natively over recordings of the PID loop, with the very observers of the units. Every \
+    "The pushed loops and the table of starts come from the packaged models; the comparison of observers and the trade-off \
+     run natively over recordings of the PID loop, with the very observers of the models. Every \
      observer of the comparison is tuned once for the same objective: the geometric mean of the velocity errors over \
      sensor noises of 0.1, 0.3, 1 and 3 mV, masses of -20, 0 and +20 %, and two references, with a push of 1 m/s². It is \
      scored on other seeds.",
@@ -73,7 +73,7 @@ fn advice(contenders: &[Contender], scores: &[Vec<f64>]) -> String {
     let choices: Vec<String> =
         TESTS.iter().zip(scores).map(|(test, row)| format!("{}: {}", test.name(), best(row))).collect();
     format!(
-        "Smallest velocity error by condition, each observer tuned once for all of them: {}. The controller unit has them all, \
+        "Smallest velocity error by condition, each observer tuned once for all of them: {}. The controller model has them all, \
          as observer.kind = linear, nonlinear, kalman and windowed_newton. Of the extended state observers, tuned ones are \
          several times better than the printed; to control, give the observer the plant's input gain, about -3705 in volts.",
         choices.join("; ")

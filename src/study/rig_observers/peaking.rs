@@ -148,7 +148,7 @@ pub fn figure(lines: &[Line]) -> FigureWithData {
         .panels(2, [plane, over])
 }
 
-/// Peaks and rms errors for the controller unit's three starts, through the packages.
+/// Peaks and rms errors for the controller model's three starts, through the packages.
 pub fn starts(packages: &LoopPackages) -> Result<Summary, StudyError> {
     let mut rows = Vec::new();
     for (observer, kind, input_gain) in [

@@ -1,4 +1,4 @@
-//! What a particle stands for: an extended state observer's parameters, their box and their names in the controller unit.
+//! What a particle stands for: an extended state observer's parameters, their box and their names in the controller model.
 
 use crate::observer::extended_state::{
     ExtendedStateModel, Gains, LinearInjection, NonlinearInjection, gains_from_bandwidth,
@@ -141,7 +141,7 @@ impl Candidate {
 }
 
 impl Candidate {
-    /// As parameters of the controller unit.
+    /// As parameters of the controller model.
     pub fn parameters(&self) -> Vec<Parameter<'static>> {
         const GAINS: [&str; 3] = ["observer.gain[1]", "observer.gain[2]", "observer.gain[3]"];
         const EXPONENTS: [&str; 3] = ["observer.exponent[1]", "observer.exponent[2]", "observer.exponent[3]"];

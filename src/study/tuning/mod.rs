@@ -67,7 +67,7 @@ impl Objective {
         }
     }
 
-    /// Parameters of the controller unit with which it runs the observer as this objective does.
+    /// Parameters of the controller model with which it runs the observer as this objective does.
     fn surroundings(&self, observer: ObserverKind) -> Vec<Parameter<'static>> {
         let discretisation = match (self, observer) {
             (Self::NoiseAware(_), ObserverKind::Linear) => "exact",
@@ -93,7 +93,7 @@ pub struct Tuned {
     pub optimum: Optimum,
     /// The objective with Table 3 or 4.
     pub printed_cost: f64,
-    /// Of the controller unit.
+    /// Of the controller model.
     pub parameters: Vec<Parameter<'static>>,
 }
 

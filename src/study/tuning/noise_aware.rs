@@ -6,7 +6,7 @@
 //! ```
 //!
 //! so that each run counts by the factor, not by the amount, in which an observer is better. Position in sensor volts,
-//! and each observer as the controller unit runs it: linear exact, nonlinear by Runge-Kutta with the measurement held, both
+//! and each observer as the controller model runs it: linear exact, nonlinear by Runge-Kutta with the measurement held, both
 //! from a steady start. Not from the paper.
 
 use super::candidate::Candidate;
@@ -68,7 +68,7 @@ impl NoiseAware {
     }
 }
 
-/// The observer as the controller unit runs it by default, in volts.
+/// The observer as the controller model runs it by default, in volts.
 pub fn settings(candidate: &Candidate) -> ExtendedStateSettings {
     let (injection, input_gain, discretisation) = match *candidate {
         Candidate::Linear { bandwidth, input_gain } => (

@@ -3,7 +3,7 @@
 
 use maglev_fmu::plant::levitated_ball::LevitatedBall;
 use maglev_fmu::signal::BallReference::{self, Constant, Sinusoids, Steps};
-use maglev_fmu::unit::{LevitatedBallController, Silence, Unit, UnitError};
+use maglev_fmu::model::{LevitatedBallController, Silence, Model, ModelError};
 use maglev_fmu_test::values::{get, set};
 use proptest::prelude::*;
 
@@ -190,7 +190,7 @@ fn equal_prefilters_are_refused() {
     // Not at initialisation, where an importer may be between setting the one and the other.
     controller.initialise(0.0).unwrap();
     let refused = controller.check_parameters().unwrap_err();
-    assert!(matches!(refused, UnitError::Equal { value: 100.0, .. }));
+    assert!(matches!(refused, ModelError::Equal { value: 100.0, .. }));
     let expected = "observer.prefilter[1] and observer.prefilter[2] are both 100 1/s: expected numbers that differ by a millionth or more";
     assert_eq!(refused.to_string(), expected);
 }

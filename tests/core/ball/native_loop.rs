@@ -1,11 +1,11 @@
-//! The two levitated ball units wired natively, without FMI, as a master in the controller-first order would.
+//! The two levitated ball models wired natively, without FMI, as a master in the controller-first order would.
 
 use std::ops::{Deref, DerefMut};
 
 use maglev_fmu::plant::levitated_ball::LevitatedBall;
 use maglev_fmu::signal::BallReference;
-use maglev_fmu::unit::system::BALL;
-use maglev_fmu::unit::{ClosedLoop, Silence};
+use maglev_fmu::model::system::BALL;
+use maglev_fmu::model::{ClosedLoop, Silence};
 use maglev_fmu_test::closed_loop::closed_loop;
 use maglev_fmu_test::values::{get, reference, set};
 
@@ -23,7 +23,7 @@ pub fn carrying_flux() -> f64 {
 
 /// The loop on one of the paper's references.
 pub struct BallLoop {
-    units: ClosedLoop,
+    models: ClosedLoop,
     pub signal: BallReference,
     pub ticks: u32,
     /// Added to the voltage that acts [V].
@@ -36,13 +36,13 @@ impl Deref for BallLoop {
     type Target = ClosedLoop;
 
     fn deref(&self) -> &ClosedLoop {
-        &self.units
+        &self.models
     }
 }
 
 impl DerefMut for BallLoop {
     fn deref_mut(&mut self) -> &mut ClosedLoop {
-        &mut self.units
+        &mut self.models
     }
 }
 
@@ -58,8 +58,8 @@ impl BallLoop {
             ("controller.reference_filter", signal.filter_rate()),
             ("observer.initial.flux", (1.0 - offset) * carrying_flux()),
         ];
-        let units = closed_loop(&BALL, plant_values, &[&start, controller_values].concat());
-        Self { units, signal, ticks: 0, voltage_offset: 0.0, reference_offset: 0.0 }
+        let models = closed_loop(&BALL, plant_values, &[&start, controller_values].concat());
+        Self { models, signal, ticks: 0, voltage_offset: 0.0, reference_offset: 0.0 }
     }
 
     /// The controller ticks, then the plant moves on.

@@ -2,7 +2,7 @@
 
 use maglev_fmu::plant::end_stops::Contact;
 use maglev_fmu::plant::levitated_ball::{Drive, LevitatedBall, State};
-use maglev_fmu::unit::{LevitatedBallPlant, Silence, Unit, UnitError};
+use maglev_fmu::model::{LevitatedBallPlant, Silence, Model, ModelError};
 use maglev_fmu_test::values::{get, set};
 use proptest::prelude::*;
 
@@ -228,7 +228,7 @@ fn an_endless_step_is_refused_with_its_limit() {
     let mut plant = LevitatedBallPlant::new();
     plant.initialise(0.0).unwrap();
     let refused = plant.advance(1e9, &mut Silence).unwrap_err();
-    assert!(matches!(refused, UnitError::StepTooLong { duration: 1e9, .. }), "{refused}");
+    assert!(matches!(refused, ModelError::StepTooLong { duration: 1e9, .. }), "{refused}");
     assert_eq!(get(&plant, "time"), 0.0);
 }
 

@@ -1,9 +1,9 @@
-//! Plant and controller units wired natively, sensor included, from every start of the paper's Table 1.
+//! Plant and controller models wired natively, sensor included, from every start of the paper's Table 1.
 
-use maglev_fmu::unit::ClosedLoop;
-use maglev_fmu::unit::system::BEARING;
-use maglev_fmu::unit::variable::{Causality, Kind};
-use maglev_fmu::unit::{MagneticBearingController, Silence, Unit};
+use maglev_fmu::model::ClosedLoop;
+use maglev_fmu::model::system::BEARING;
+use maglev_fmu::model::variable::{Causality, Kind};
+use maglev_fmu::model::{MagneticBearingController, Silence, Model};
 use maglev_fmu_test::bearing::{EXACT, FLUX_CASCADE, KALMAN};
 use maglev_fmu_test::closed_loop::closed_loop;
 use maglev_fmu_test::values::{get, set};
@@ -15,7 +15,7 @@ const VOLTAGES: [f64; 3] = [-50.0, -100.0, -150.0];
 /// Bias flux of the paper's low-bias operation [Wb], epsilon = 0.0909.
 const LOW_BIAS: f64 = 1e-4;
 
-/// All starts of Table 1 with the given parameters of both units.
+/// All starts of Table 1 with the given parameters of both models.
 fn starts(
     plant: &[(&'static str, f64)],
     controller: &[(&'static str, f64)],
@@ -149,15 +149,15 @@ proptest! {
         samples in prop::collection::vec([any_finite(); 4], 3..80),
         plausible: bool,
     ) {
-        let mut unit = MagneticBearingController::new();
-        let variables = unit.description().variables;
+        let mut model = MagneticBearingController::new();
+        let variables = model.description().variables;
         for (reference, (variable, share)) in variables.iter().zip(&shares).enumerate() {
             // Every sample is to reach observer and law.
             if variable.causality != Causality::Parameter || ["start_delay", "longest_step"].contains(&variable.name) {
                 continue;
             }
             let (minimum, maximum) = variable.range;
-            unit.values_mut()[reference] = match variable.kind {
+            model.values_mut()[reference] = match variable.kind {
                 Kind::Enumeration(items) => (1.0 + share * items.items.len() as f64).floor().min(items.items.len() as f64),
                 Kind::Boolean => share.round(),
                 Kind::Integer => (minimum + share * (maximum - minimum)).round(),
@@ -165,21 +165,21 @@ proptest! {
                 Kind::Real(_) if *share < 0.5 => minimum + (maximum - minimum) * libm::pow(10.0, -60.0 * share),
                 Kind::Real(_) => variable.start,
             };
-            prop_assert!(variable.check(unit.values()[reference]).is_ok(), "{}", variable.name);
+            prop_assert!(variable.check(model.values()[reference]).is_ok(), "{}", variable.name);
         }
-        unit.initialise(0.0).unwrap();
-        let (limit, sample_time) = (get(&unit, "controller.voltage_limit"), get(&unit, "sample_time"));
+        model.initialise(0.0).unwrap();
+        let (limit, sample_time) = (get(&model, "controller.voltage_limit"), get(&model, "sample_time"));
         for sample in samples {
             for (input, value) in ["position", "voltage_applied", "state.velocity", "state.flux"].iter().zip(sample) {
                 // Small numbers are ordinary positions and voltages.
                 let value = if plausible { value.signum() * (value.abs() % 1.0) } else { value };
-                set(&mut unit, input, value);
+                set(&mut model, input, value);
             }
-            unit.advance(sample_time, &mut Silence).unwrap();
-            for (value, variable) in unit.values().iter().zip(variables) {
+            model.advance(sample_time, &mut Silence).unwrap();
+            for (value, variable) in model.values().iter().zip(variables) {
                 prop_assert!(value.is_finite(), "{} = {value}", variable.name);
             }
-            prop_assert!(get(&unit, "voltage").abs() <= limit);
+            prop_assert!(get(&model, "voltage").abs() <= limit);
         }
     }
 }

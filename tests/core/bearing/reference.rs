@@ -1,7 +1,7 @@
 //! The bearing loop against trajectories of an independent prototype.
 
-use maglev_fmu::unit::ClosedLoop;
-use maglev_fmu::unit::system::BEARING;
+use maglev_fmu::model::ClosedLoop;
+use maglev_fmu::model::system::BEARING;
 use maglev_fmu_test::closed_loop::closed_loop;
 use maglev_fmu_test::values::get;
 

@@ -3,7 +3,7 @@
 
 use maglev_fmu::observer::extended_state::{ExtendedState, gains_from_bandwidth};
 use maglev_fmu::observer::extended_state_exact::ExactPredictor;
-use maglev_fmu::unit::{ClosedLoop, Silence, system};
+use maglev_fmu::model::{ClosedLoop, Silence, system};
 use maglev_fmu_test::closed_loop::closed_loop;
 use maglev_fmu_test::rig::{
     APPLIED, CURRENT, DISTURBANCE_REJECTION, EULER, METRES, NONLINEAR, THROUGH_EXTENDED_STATE,
@@ -96,7 +96,7 @@ fn pid_radius(sign: f64) -> f64 {
 fn sampled_pid_loop_is_as_fast_as_its_integral() {
     assert_near(pid_radius(1.0), 0.99939, 1e-5, "e = y - r");
     assert_near(pid_radius(-1.0), 1.178, 1e-3, "e = r - y");
-    // The units' loop decays by that per sample, once the fast poles are over.
+    // The models' loop decays by that per sample, once the fast poles are over.
     let mut rig = closed_loop(&system::RIG, &[], &[]);
     set(&mut *rig.plant, "force", 1e-4);
     let mut voltage = || {
@@ -104,7 +104,7 @@ fn sampled_pid_loop_is_as_fast_as_its_integral() {
         get(&*rig.plant, "sensor_voltage") - SENSOR.voltage(SET_POINT)
     };
     let decay = (voltage() / voltage()).powf(-1e-3);
-    assert_near(decay, pid_radius(1.0), 1e-5, "units");
+    assert_near(decay, pid_radius(1.0), 1e-5, "models");
 }
 
 /// Spectral radius of the loop through the exact predictor, for the true rig.
@@ -314,8 +314,8 @@ fn filtered_reference_is_followed_through_the_extended_state() {
 }
 
 #[test]
-fn applied_voltage_makes_the_observer_right_when_both_units_step_at_once() {
-    // Jacobi's order: both units see the other's outputs of the step before, so that the voltage acts a step late.
+fn applied_voltage_makes_the_observer_right_when_both_models_step_at_once() {
+    // Jacobi's order: both models see the other's outputs of the step before, so that the voltage acts a step late.
     // What the observer should say, from the voltage that truly acted.
     let predictor = ExactPredictor::new(gains_from_bandwidth(300.0), -3705.0, T);
     let difference = |source: f64| {

@@ -1,4 +1,4 @@
-//! The paper's experiment natively, without units: digital PID on the rig, voltage held, plant by Runge-Kutta with ten
+//! The paper's experiment natively, without models: digital PID on the rig, voltage held, plant by Runge-Kutta with ten
 //! sub-steps per sample. Written apart from the plant's own integrator, as a second opinion.
 
 use maglev_fmu::controller::digital_pid::{Derivative, DigitalPid, PidSettings};

@@ -1,9 +1,9 @@
-//! The rig's observers that know a model, Kalman filter and windowed Newton, through the units: what they estimate, what
+//! The rig's observers that know a model, Kalman filter and windowed Newton, through the models: what they estimate, what
 //! they bear, and the loop through their extended state.
 
 use maglev_fmu::plant::maglev_rig::MaglevRig;
-use maglev_fmu::unit::Silence;
-use maglev_fmu::unit::system;
+use maglev_fmu::model::Silence;
+use maglev_fmu::model::system;
 use maglev_fmu_test::closed_loop::closed_loop;
 use maglev_fmu_test::rig::{APPLIED, KALMAN, METRES, THROUGH_EXTENDED_STATE, WINDOWED_NEWTON, ZERO};
 use maglev_fmu_test::values::{get, set};
@@ -278,7 +278,7 @@ fn tunable_parameters_reach_the_running_observer() {
 
 #[test]
 fn applied_voltage_is_what_the_model_is_told() {
-    // Both units step at once, so that the voltage acts a step late.
+    // Both models step at once, so that the voltage acts a step late.
     for kind in KINDS {
         let errors = [1.0, APPLIED].map(|source| {
             let controller = [

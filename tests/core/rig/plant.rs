@@ -1,6 +1,6 @@
-//! The rig's plant unit: driver, sensor, stops, and what does not depend on the communication step.
+//! The rig's plant model: driver, sensor, stops, and what does not depend on the communication step.
 
-use maglev_fmu::unit::{MaglevRigPlant, Silence, Unit, UnitError};
+use maglev_fmu::model::{MaglevRigPlant, Silence, Model, ModelError};
 use maglev_fmu_test::values::{get, set};
 use proptest::prelude::*;
 
@@ -76,14 +76,14 @@ fn a_step_of_hours_is_refused_and_changes_nothing() {
     let mut plant = plant(&[]);
     let before = plant.values().to_vec();
     let refused = plant.advance(1e5, &mut Silence).unwrap_err();
-    let UnitError::StepTooLong { limit, .. } = refused else { panic!("{refused}") };
+    let ModelError::StepTooLong { limit, .. } = refused else { panic!("{refused}") };
     let said = format!("a step of 100000 s: expected at most {limit} s, about a second of computing");
     assert!(refused.to_string().starts_with(&said), "{refused}");
     assert_eq!(plant.values(), before);
     // Sensor and integrator share the second.
     let mut read = self::plant(&[("sensor.sample_time", 1e-6)]);
     let refused = read.advance(1e5, &mut Silence).unwrap_err();
-    assert!(matches!(refused, UnitError::StepTooLong { limit: shorter, .. } if shorter < limit), "{refused}");
+    assert!(matches!(refused, ModelError::StepTooLong { limit: shorter, .. } if shorter < limit), "{refused}");
 }
 
 proptest! {

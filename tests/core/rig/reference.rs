@@ -5,7 +5,7 @@ use maglev_fmu::observer::extended_state::{
     ExtendedState, ExtendedStateModel, LinearInjection, gains_from_bandwidth,
 };
 use maglev_fmu::observer::extended_state_exact::ExactPredictor;
-use maglev_fmu::unit::system::RIG;
+use maglev_fmu::model::system::RIG;
 use maglev_fmu_test::closed_loop::closed_loop;
 use maglev_fmu_test::rig::{CURRENT, MATCHED, METRES, NONLINEAR, RUNGE_KUTTA, ZERO};
 use maglev_fmu_test::values::{get, set};
@@ -75,8 +75,8 @@ fn native_loop_and_observers_match_the_reference() {
     assert_eq!(SENSOR.voltage(9e-3), -1.50868);
 }
 
-/// Rows as in the reference, with the estimates of one observer, from a run through the units.
-fn unit_rows(controller: &[(&str, f64)]) -> Vec<Vec<f64>> {
+/// Rows as in the reference, with the estimates of one observer, from a run through the models.
+fn model_rows(controller: &[(&str, f64)]) -> Vec<Vec<f64>> {
     let mut rig = closed_loop(&RIG, &[], controller);
     let mut rows = Vec::new();
     for k in 0..4000 {
@@ -96,7 +96,7 @@ fn unit_rows(controller: &[(&str, f64)]) -> Vec<Vec<f64>> {
 }
 
 #[test]
-fn units_match_the_reference() {
+fn models_match_the_reference() {
     let paper = [
         ("observer.measurement", METRES),
         ("observer.initial", ZERO),
@@ -108,6 +108,6 @@ fn units_match_the_reference() {
         [(&paper[..], [6, 7, 8]), (&nonlinear, [9, 10, 11]), (&[("observer.initial", MATCHED)], [12, 13, 14])]
     {
         let columns = [&[0, 1, 2, 3, 4, 5][..], &estimate].concat();
-        assert_columns_match(&unit_rows(controller), &columns, 1e-9);
+        assert_columns_match(&model_rows(controller), &columns, 1e-9);
     }
 }

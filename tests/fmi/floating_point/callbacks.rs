@@ -52,17 +52,17 @@ unsafe extern "C-unwind" fn clock_update(_: *mut c_void) {
     find();
 }
 
-fn with_loggers(standard: Standard, unit: &str) -> Component {
+fn with_loggers(standard: Standard, model: &str) -> Component {
     type Fixed = unsafe extern "C-unwind" fn(*mut c_void, *const c_char, i32, *const c_char, *const c_char);
     // SAFETY: as for the recording logger of the harness.
     let logger2 = unsafe { transmute::<Fixed, fmi2CallbackLogger>(logger2) };
-    let token = CString::new(description(unit).token().as_str()).unwrap();
+    let token = CString::new(description(model).token().as_str()).unwrap();
     // SAFETY: C strings, and loggers that need no environment.
     let handle = unsafe {
         let (name, loggers) = (c"hosted".as_ptr(), (Some(logger2), Some(logger3 as _)));
         instantiate_with(standard, name, token.as_ptr(), null(), null_mut(), loggers.0, loggers.1, true)
     };
-    Component::from_handle(standard, unit, handle, Box::default())
+    Component::from_handle(standard, model, handle, Box::default())
 }
 
 #[test]

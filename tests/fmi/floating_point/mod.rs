@@ -1,4 +1,4 @@
-//! Hosts that let exceptions trap, round otherwise or flush small numbers: the units compute the same bits, and the
+//! Hosts that let exceptions trap, round otherwise or flush small numbers: the models compute the same bits, and the
 //! control word is the host's own again after every call and within its callbacks.
 
 mod callbacks;
@@ -8,12 +8,12 @@ use core::ptr::null_mut;
 use std::hint::black_box;
 
 use host::{DEFAULT, ENVIRONMENTS, hosted};
-use maglev_fmu::unit::variable::{Causality, Kind, Variable};
-use maglev_fmu::unit::{Description, units};
+use maglev_fmu::model::variable::{Causality, Kind, Variable};
+use maglev_fmu::model::{Description, models};
 use proptest::prelude::*;
 use proptest::sample::select;
 
-use super::harness::clocked::{Choices, sampled_units};
+use super::harness::clocked::{Choices, sampled_models};
 use super::harness::{BOTH, CONTROLLER, Component, description, plants};
 
 /// What a life consists of: parameters, then an input row per step of 1 ms.
@@ -131,10 +131,10 @@ fn tame_number() -> impl Strategy<Value = f64> {
 }
 
 /// A value that a parameter takes, more often than not.
-fn parameter_value(unit: &Description, variable: &'static Variable) -> BoxedStrategy<f64> {
+fn parameter_value(model: &Description, variable: &'static Variable) -> BoxedStrategy<f64> {
     let (low, high) = variable.range;
     match variable.kind {
-        Kind::Real(_) if !unit.is_sampled() => {
+        Kind::Real(_) if !model.is_sampled() => {
             let start = variable.start;
             (0.5..2.0f64).prop_map(move |share| share * start).boxed()
         }
@@ -151,8 +151,8 @@ fn parameter_value(unit: &Description, variable: &'static Variable) -> BoxedStra
     }
 }
 
-fn script(unit: &'static str) -> impl Strategy<Value = Script> {
-    let description = description(unit);
+fn script(model: &'static str) -> impl Strategy<Value = Script> {
+    let description = description(model);
     let rows = || (0u32..).zip(description.variables);
     let parameters: Vec<_> = rows()
         .filter(|(_, row)| row.causality == Causality::Parameter)
@@ -165,23 +165,23 @@ fn script(unit: &'static str) -> impl Strategy<Value = Script> {
     (parameters, rows).prop_map(|(parameters, rows)| Script { parameters, rows })
 }
 
-/// Runs `check` with random lives of every unit that `is_meant`.
+/// Runs `check` with random lives of every model that `is_meant`.
 fn for_random_lives(is_meant: impl Fn(&str) -> bool, check: impl Fn(&'static str, &Script)) {
-    for unit in units().map(|unit| unit.description.name).filter(|name| is_meant(name)) {
+    for model in models().map(|model| model.description.name).filter(|name| is_meant(name)) {
         let config = ProptestConfig { cases: 40, failure_persistence: None, ..ProptestConfig::default() };
-        proptest!(config, |(script in script(unit))| {
-            check(unit, &script);
+        proptest!(config, |(script in script(model))| {
+            check(model, &script);
         });
     }
 }
 
 #[test]
-fn steps_of_all_units_are_the_same_in_every_host() {
+fn steps_of_all_models_are_the_same_in_every_host() {
     for_random_lives(
         |_| true,
-        |unit, script| {
+        |model, script| {
             for standard in BOTH {
-                assert_same_everywhere(|| Component::new(standard, unit), script, do_step);
+                assert_same_everywhere(|| Component::new(standard, model), script, do_step);
             }
         },
     );
@@ -198,10 +198,10 @@ fn ticks_at_events_and_on_activation_are_the_same_in_every_host() {
     };
     let events = Choices { event_mode: true, early_return: true, intermediate_update: None };
     for_random_lives(
-        |unit| sampled_units().any(|sampled| sampled == unit),
-        |unit, script| {
-            assert_same_everywhere(|| Component::co_simulation(unit, events), script, at_event);
-            assert_same_everywhere(|| Component::scheduled(unit, None), script, Component::activate);
+        |model| sampled_models().any(|sampled| sampled == model),
+        |model, script| {
+            assert_same_everywhere(|| Component::co_simulation(model, events), script, at_event);
+            assert_same_everywhere(|| Component::scheduled(model, None), script, Component::activate);
         },
     );
 }
@@ -230,8 +230,8 @@ fn derivatives_are_the_same_in_every_host() {
     };
     for (standard, plant) in plants() {
         for_random_lives(
-            |unit| unit == plant,
-            |unit, script| assert_same_everywhere(|| Component::exchanged(standard, unit), script, integrate),
+            |model| model == plant,
+            |model, script| assert_same_everywhere(|| Component::exchanged(standard, model), script, integrate),
         );
     }
 }

@@ -2,7 +2,7 @@
 
 use maglev_fmu::fmi::fmi2::*;
 use maglev_fmu::fmi::fmi3::*;
-use maglev_fmu::unit::variable::{Kind, Variable};
+use maglev_fmu::model::variable::{Kind, Variable};
 
 use super::{Component, DISCARD, ERROR, OK, Phase, Standard};
 

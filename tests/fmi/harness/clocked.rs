@@ -5,13 +5,13 @@ use core::ptr::null;
 
 use maglev_fmu::fmi::fmi3::types::*;
 use maglev_fmu::fmi::fmi3::*;
-use maglev_fmu::unit::{Edition, units};
+use maglev_fmu::model::{Edition, models};
 
 use super::{Component, OK, Recorder, Standard, fmi3_logger, token};
 
-/// Names of all units that tick.
-pub fn sampled_units() -> impl Iterator<Item = &'static str> {
-    units().map(|unit| unit.description).filter(|unit| unit.is_sampled()).map(|unit| unit.name)
+/// Names of all models that tick.
+pub fn sampled_models() -> impl Iterator<Item = &'static str> {
+    models().map(|model| model.description).filter(|model| model.is_sampled()).map(|model| model.name)
 }
 
 /// What fmi3DoStep tells.
@@ -53,23 +53,23 @@ pub unsafe extern "C-unwind" fn go_on(
 }
 
 impl Component {
-    /// A co-simulation instance that knows the unit's clocks; its recorder is the environment of the callback.
-    pub fn co_simulation(unit: &str, choices: Choices) -> Self {
-        Self::co_simulation_of(Edition::Clocked, unit, choices)
+    /// A co-simulation instance that knows the model's clocks; its recorder is the environment of the callback.
+    pub fn co_simulation(model: &str, choices: Choices) -> Self {
+        Self::co_simulation_of(Edition::Clocked, model, choices)
     }
 
     /// As [`Component::co_simulation`], of any edition.
-    pub fn co_simulation_of(edition: Edition, unit: &str, choices: Choices) -> Self {
+    pub fn co_simulation_of(edition: Edition, model: &str, choices: Choices) -> Self {
         let recorder = Box::new(Recorder::default());
         let environment = recorder.environment();
-        let handle = co_simulation_of(edition, unit, choices, environment);
-        assert!(!handle.is_null(), "{unit}: {:?}", recorder.messages());
-        Self::from_handle(Standard::Fmi3, unit, handle, recorder)
+        let handle = co_simulation_of(edition, model, choices, environment);
+        assert!(!handle.is_null(), "{model}: {:?}", recorder.messages());
+        Self::from_handle(Standard::Fmi3, model, handle, recorder)
     }
 
-    pub fn scheduled(unit: &str, clock_update: Option<fmi3ClockUpdateCallback>) -> Self {
+    pub fn scheduled(model: &str, clock_update: Option<fmi3ClockUpdateCallback>) -> Self {
         let recorder = Box::new(Recorder::default());
-        let token = token(unit, Edition::Clocked);
+        let token = token(model, Edition::Clocked);
         // SAFETY: C strings, a recorder that outlives the instance; nothing else is given.
         let handle = unsafe {
             let (name, environment, log) = (c"scheduled".as_ptr(), recorder.environment(), fmi3_logger as _);
@@ -86,8 +86,8 @@ impl Component {
                 None,
             )
         };
-        assert!(!handle.is_null(), "{unit}: {:?}", recorder.messages());
-        Self::from_handle(Standard::Fmi3, unit, handle, recorder)
+        assert!(!handle.is_null(), "{model}: {:?}", recorder.messages());
+        Self::from_handle(Standard::Fmi3, model, handle, recorder)
     }
 
     /// Value references of the clocks `tick` and `ticked`.
@@ -162,18 +162,18 @@ impl Component {
 }
 
 /// As [`Component::co_simulation`], null if refused.
-pub fn co_simulation(unit: &str, choices: Choices, environment: *mut c_void) -> fmi3Instance {
-    co_simulation_of(Edition::Clocked, unit, choices, environment)
+pub fn co_simulation(model: &str, choices: Choices, environment: *mut c_void) -> fmi3Instance {
+    co_simulation_of(Edition::Clocked, model, choices, environment)
 }
 
 /// As [`Component::co_simulation_of`], null if refused.
 pub fn co_simulation_of(
     edition: Edition,
-    unit: &str,
+    model: &str,
     choices: Choices,
     environment: *mut c_void,
 ) -> fmi3Instance {
-    let token = token(unit, edition);
+    let token = token(model, edition);
     // SAFETY: C strings; the callers keep the environment alive.
     unsafe {
         fmi3InstantiateCoSimulation(

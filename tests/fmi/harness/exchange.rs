@@ -6,23 +6,23 @@ use std::ffi::CString;
 use maglev_fmu::fmi::fmi2::types::{FMI2_MODEL_EXCHANGE, fmi2CallbackFunctions, fmi2EventInfo};
 use maglev_fmu::fmi::fmi2::*;
 use maglev_fmu::fmi::fmi3::*;
-use maglev_fmu::unit::{Description, units};
+use maglev_fmu::model::{Description, models};
 
 use super::{BOTH, Component, OK, Recorder, Standard, description, fmi2_logger, fmi3_logger};
 
 /// Every combination of standard and plant.
 pub fn plants() -> impl Iterator<Item = (Standard, &'static str)> {
     let is_plant = |description: &&Description| description.offers_model_exchange();
-    let plants = units().map(|unit| unit.description).filter(is_plant).map(|plant| plant.name);
+    let plants = models().map(|model| model.description).filter(is_plant).map(|plant| plant.name);
     plants.flat_map(|plant| BOTH.map(|standard| (standard, plant)))
 }
 
 impl Component {
     /// An instance for model exchange.
-    pub fn exchanged(standard: Standard, unit: &str) -> Self {
+    pub fn exchanged(standard: Standard, model: &str) -> Self {
         let recorder = Box::new(Recorder::default());
         let (environment, name) = (recorder.environment(), c"under test".as_ptr());
-        let token = CString::new(description(unit).token().as_str()).unwrap();
+        let token = CString::new(description(model).token().as_str()).unwrap();
         let functions = fmi2CallbackFunctions {
             logger: Some(fmi2_logger()),
             allocate_memory: None,
@@ -48,13 +48,13 @@ impl Component {
                 ),
             }
         };
-        assert!(!handle.is_null(), "{standard:?} {unit}: {:?}", recorder.messages());
-        Self::from_handle(standard, unit, handle, recorder)
+        assert!(!handle.is_null(), "{standard:?} {model}: {:?}", recorder.messages());
+        Self::from_handle(standard, model, handle, recorder)
     }
 
     /// As [`Component::exchanged`], in continuous-time mode at t = 0.
-    pub fn in_continuous_time(standard: Standard, unit: &str) -> Self {
-        let component = Self::exchanged(standard, unit);
+    pub fn in_continuous_time(standard: Standard, model: &str) -> Self {
+        let component = Self::exchanged(standard, model);
         component.initialise(0.0);
         component.update_discrete_states();
         assert_eq!(component.enter_continuous_time(), OK);
@@ -127,7 +127,7 @@ impl Component {
         }
     }
 
-    /// No unit has step events, nor ends a simulation.
+    /// No model has step events, nor ends a simulation.
     pub fn complete_integrator_step(&self) -> i32 {
         // SAFETY: a live handle, room for the results.
         let (status, results) = unsafe {

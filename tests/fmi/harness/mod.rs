@@ -14,8 +14,8 @@ use maglev_fmu::fmi::fmi2::types::fmi2Boolean;
 use maglev_fmu::fmi::fmi2::*;
 use maglev_fmu::fmi::fmi3::types::fmi3Boolean;
 use maglev_fmu::fmi::fmi3::*;
-use maglev_fmu::unit::variable::Causality;
-use maglev_fmu::unit::{Description, Edition, units};
+use maglev_fmu::model::variable::Causality;
+use maglev_fmu::model::{Description, Edition, models};
 
 pub use exchange::plants;
 pub use instantiate::{instantiate, instantiate_with};
@@ -38,15 +38,15 @@ pub enum Standard {
 
 pub const BOTH: [Standard; 2] = [Standard::Fmi2, Standard::Fmi3];
 
-/// Every combination of standard and unit.
+/// Every combination of standard and model.
 pub fn all() -> impl Iterator<Item = (Standard, &'static str)> {
-    let names = units().map(|unit| unit.description.name);
-    BOTH.into_iter().flat_map(move |standard| names.clone().map(move |unit| (standard, unit)))
+    let names = models().map(|model| model.description.name);
+    BOTH.into_iter().flat_map(move |standard| names.clone().map(move |model| (standard, model)))
 }
 
-/// The bearing's units under both standards, for tests that name their variables.
+/// The bearing's models under both standards, for tests that name their variables.
 pub fn bearing() -> impl Iterator<Item = (Standard, &'static str)> {
-    BOTH.into_iter().flat_map(|standard| [PLANT, CONTROLLER].map(|unit| (standard, unit)))
+    BOTH.into_iter().flat_map(|standard| [PLANT, CONTROLLER].map(|model| (standard, model)))
 }
 
 /// Phases that an importer can bring an instance into.
@@ -72,13 +72,13 @@ impl Phase {
     }
 }
 
-/// Instantiation token of an edition of a unit.
-pub fn token(unit: &str, edition: Edition) -> CString {
-    CString::new(edition.token(description(unit)).as_str()).unwrap()
+/// Instantiation token of an edition of a model.
+pub fn token(model: &str, edition: Edition) -> CString {
+    CString::new(edition.token(description(model)).as_str()).unwrap()
 }
 
-pub fn description(unit: &str) -> &'static Description {
-    units().find(|known| known.description.name == unit).expect("a unit").description
+pub fn description(model: &str) -> &'static Description {
+    models().find(|known| known.description.name == model).expect("a model").description
 }
 
 /// An instance with a recording logger. Freed when dropped.
@@ -94,29 +94,29 @@ unsafe impl Send for Component {}
 
 impl Component {
     /// An instance called `under test` with logging on.
-    pub fn new(standard: Standard, unit: &str) -> Self {
-        Self::with_logging(standard, unit, true)
+    pub fn new(standard: Standard, model: &str) -> Self {
+        Self::with_logging(standard, model, true)
     }
 
-    pub fn with_logging(standard: Standard, unit: &str, logging_on: bool) -> Self {
+    pub fn with_logging(standard: Standard, model: &str, logging_on: bool) -> Self {
         let recorder = Box::new(Recorder::default());
-        let token = token(unit, Edition::Plain);
+        let token = token(model, Edition::Plain);
         // SAFETY: C strings and callbacks that live long enough.
         let handle = unsafe {
             instantiate(standard, c"under test".as_ptr(), token.as_ptr(), recorder.environment(), logging_on)
         };
-        assert!(!handle.is_null(), "{standard:?} {unit}: {:?}", recorder.messages());
-        Self { standard, description: description(unit), handle, recorder }
+        assert!(!handle.is_null(), "{standard:?} {model}: {:?}", recorder.messages());
+        Self { standard, description: description(model), handle, recorder }
     }
 
     /// Around an instance that was made elsewhere.
-    pub fn from_handle(standard: Standard, unit: &str, handle: *mut c_void, recorder: Box<Recorder>) -> Self {
-        Self { standard, description: description(unit), handle, recorder }
+    pub fn from_handle(standard: Standard, model: &str, handle: *mut c_void, recorder: Box<Recorder>) -> Self {
+        Self { standard, description: description(model), handle, recorder }
     }
 
     /// A new instance brought into `phase`, with an empty log. In the last two phases some steps were done.
-    pub fn in_phase(standard: Standard, unit: &str, phase: Phase) -> Self {
-        let component = Self::new(standard, unit);
+    pub fn in_phase(standard: Standard, model: &str, phase: Phase) -> Self {
+        let component = Self::new(standard, model);
         if phase != Phase::Instantiated {
             assert_eq!(component.enter_initialization(0.0, None), OK);
         }

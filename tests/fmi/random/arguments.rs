@@ -13,7 +13,7 @@ pub enum Arguments {
     Good,
     /// OK, or Discard if a value overflows.
     Computed,
-    /// The unit may have its reasons.
+    /// The model may have its reasons.
     Open,
     /// Error or Discard.
     Wrong,
@@ -100,7 +100,7 @@ pub fn judge(oracle: &Oracle, call: &Call, saved: &dyn Fn(usize) -> Option<Model
                 (false, _) => Wrong,
                 (true, true) => Good,
                 (true, false) if values.iter().all(|value| *value == 0) && !model.is_clock_set => Good,
-                // Whether a tick is due is the unit's to know.
+                // Whether a tick is due is the model's to know.
                 (true, false) => Open,
             }
         }
@@ -172,7 +172,7 @@ fn begin(experiment: &Experiment) -> Arguments {
     wrong_if(!start.is_finite() || stop.is_some_and(|stop| stop.is_nan() || stop < start))
 }
 
-/// Kinds of variables that a getter or setter carries; none for types that no unit has.
+/// Kinds of variables that a getter or setter carries; none for types that no model has.
 fn kinds(function: &str) -> &'static [Kind] {
     match &function[7..] {
         "Real" | "Float64" => &[Kind::Real],

@@ -40,7 +40,7 @@ use tally::Tally;
 /// Calls on one instance.
 const LENGTH: usize = 100;
 
-/// Longest time that a call may take, ten times what the units allow themselves: machines are slow at times.
+/// Longest time that a call may take, ten times what the models allow themselves: machines are slow at times.
 const TIME_LIMIT: Duration = Duration::from_secs(10);
 
 /// Failures that are told apart, and how many of them are told.

@@ -36,7 +36,7 @@ pub struct Model {
     pub last_activation: Option<f64>,
     /// Time before which the importer said it would restore no state.
     pub promised: f64,
-    /// Of sampled units, as far as it is known.
+    /// Of sampled models, as far as it is known.
     pub sample_time: f64,
 }
 

@@ -23,7 +23,7 @@ pub type Handle = *mut c_void;
 pub struct Kept {
     pub bytes: Vec<u8>,
     pub package: &'static str,
-    pub unit: &'static str,
+    pub name: &'static str,
     /// What the importer knew; nothing of states of other instances.
     pub model: Option<Model>,
 }
@@ -101,10 +101,10 @@ impl Session {
             Call::Serialise { slot, .. } => {
                 let saved = slots[*slot].as_ref().map(|(_, saved)| saved.clone());
                 let description = self.scenario.description;
-                let (package, unit) = (description.package.as_str(), description.name.as_str());
+                let (package, name) = (description.package.as_str(), description.name.as_str());
                 let mut kept = self.kept.borrow_mut();
                 if kept.len() < 12 {
-                    kept.push(Kept { bytes: answer.bytes.clone(), package, unit, model: saved });
+                    kept.push(Kept { bytes: answer.bytes.clone(), package, name, model: saved });
                 }
             }
             Call::Deserialise { slot, source, damage } => {
@@ -125,19 +125,19 @@ impl Session {
     pub fn refine(&self, call: &Call, verdict: Verdict) -> Verdict {
         let Call::Deserialise { source, damage, .. } = call else { return verdict };
         let kept = self.kept.borrow();
-        let Kept { bytes, package, unit, model } = &kept[*source];
+        let Kept { bytes, package, name, model } = &kept[*source];
         let description = self.scenario.description;
         let is_whole = match damage {
             Damage::Cut { length } => *length >= bytes.len(),
             Damage::Flip { .. } | Damage::Forge { .. } => false,
             Damage::None => true,
         };
-        let is_of_this_unit = (*unit, *package) == (description.name.as_str(), description.package.as_str());
+        let is_of_this_model = (*name, *package) == (description.name.as_str(), description.package.as_str());
         let arguments = match verdict.arguments {
             Arguments::Wrong if !is_whole => Arguments::Wrong,
-            _ if *unit != description.name => Arguments::Wrong,
+            _ if *name != description.name => Arguments::Wrong,
             // The same token in both standards, but not of every package.
-            _ if !is_of_this_unit => Arguments::Open,
+            _ if !is_of_this_model => Arguments::Open,
             _ if !is_whole || model.as_ref().is_none_or(|model| !model.is_known) => Arguments::Open,
             _ => Arguments::Good,
         };

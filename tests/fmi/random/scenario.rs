@@ -8,7 +8,7 @@ use maglev_fmu::fmi::fmi2::types::{FMI2_CO_SIMULATION, FMI2_MODEL_EXCHANGE, fmi2
 use maglev_fmu::fmi::fmi2::{fmi2FreeInstance, fmi2Instantiate};
 use maglev_fmu::fmi::fmi3::types::{fmi3ClockUpdateCallback, fmi3IntermediateUpdateCallback};
 use maglev_fmu::fmi::fmi3::*;
-use maglev_fmu::unit::ADDED_UNITS;
+use maglev_fmu::model::ADDED_MODELS;
 
 use super::super::harness::Standard;
 use super::super::standard::{Interface, ModelDescription};
@@ -16,7 +16,7 @@ use super::dice::Dice;
 use super::environment::in_host;
 use super::log;
 
-/// Parameter of sampled units.
+/// Parameter of sampled models.
 pub const SAMPLE_TIME: &str = "sample_time";
 
 /// A package and an interface type that it offers.
@@ -32,12 +32,12 @@ impl Scenario {
         Self::all().into_iter().filter(Self::is_packaged).collect()
     }
 
-    /// Whether this is not of a unit that a test adds.
+    /// Whether this is not of a model that a test adds.
     pub fn is_packaged(&self) -> bool {
-        ADDED_UNITS.iter().all(|added| added.unit.description.name != self.description.name)
+        ADDED_MODELS.iter().all(|added| added.model.description.name != self.description.name)
     }
 
-    /// All of all packages, then those of added units.
+    /// All of all packages, then those of added models.
     pub fn all() -> Vec<Self> {
         let interfaces = [Interface::ModelExchange, Interface::CoSimulation, Interface::ScheduledExecution];
         let all = ModelDescription::all()
@@ -51,7 +51,7 @@ impl Scenario {
         format!("{} {} {interface:?}", description.package, description.name)
     }
 
-    /// Start value of the sample time \[s\], infinite for a unit that has none.
+    /// Start value of the sample time \[s\], infinite for a model that has none.
     pub fn sample_time(&self) -> f64 {
         let variables = &self.description.variables;
         let found = variables.iter().find(|variable| variable.name == SAMPLE_TIME);

@@ -10,7 +10,7 @@ use super::call::Call;
 use super::oracle::Verdict;
 use super::session::{Session, deviations};
 
-/// A variable: package, unit, value reference.
+/// A variable: package, model, value reference.
 pub type Place = (&'static str, &'static str, u32);
 
 #[derive(Default)]

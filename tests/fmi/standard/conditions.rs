@@ -14,7 +14,7 @@ pub enum Condition {
     /// FMI 2.0, condition 2: an output or an initial unknown.
     InitialUnknownOrOutput,
     /// FMI 2.0, condition 3: initial is exact, or an input. FMI 3.0.2, sections 2.3.2 and 2.3.3, which has inputs in
-    /// Instantiated, too. No variable of these units has initial = approx.
+    /// Instantiated, too. No variable of these models has initial = approx.
     InitialOrInput,
     /// FMI 2.0, conditions 4 and 6; FMI 3.0.2, sections 4.2.1 and 5.2.1: an input or a tunable parameter.
     InputOrTunable,
@@ -22,7 +22,7 @@ pub enum Condition {
     InputTunableOrLastingState,
     /// FMI 2.0, condition 5; FMI 3.0.2, section 3.2.1: a continuous input or a continuous state.
     ContinuousInputOrState,
-    /// FMI 2.0, condition 8: of units without continuous time, which no unit of model exchange is here.
+    /// FMI 2.0, condition 8: of models without continuous time, which no model of model exchange is here.
     PureDiscreteTime,
     /// FMI 2.0.5, section 2.1.6: after fmi2SetupExperiment.
     AfterSetup,

@@ -20,7 +20,7 @@ pub enum Interface {
     ScheduledExecution,
 }
 
-/// States of the standards' state machines that an importer of these units can see.
+/// States of the standards' state machines that an importer of these models can see.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum State {
     Instantiated,

@@ -1,11 +1,11 @@
-//! Model descriptions as an importer reads them: the checked-in files, not the tables that they are written from. Of units
+//! Model descriptions as an importer reads them: the checked-in files, not the tables that they are written from. Of models
 //! that a test adds, which no file describes, what would be packaged.
 
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 use maglev_fmu::package::{Form, model_description};
-use maglev_fmu::unit::{ADDED_UNITS, StartValues};
+use maglev_fmu::model::{ADDED_MODELS, StartValues};
 use roxmltree::{Document, Node};
 
 use super::super::harness::Standard;
@@ -76,7 +76,7 @@ pub struct ModelDescription {
 }
 
 impl ModelDescription {
-    /// All that are checked in, then those of added units.
+    /// All that are checked in, then those of added models.
     pub fn all() -> &'static [Self] {
         static ALL: LazyLock<Vec<ModelDescription>> = LazyLock::new(|| {
             let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("modelDescription");
@@ -85,9 +85,9 @@ impl ModelDescription {
                 let package = file.parent().unwrap().file_name().unwrap().to_str().unwrap();
                 ModelDescription::read(package, &std::fs::read_to_string(&file).unwrap())
             });
-            let added = ADDED_UNITS.iter().map(|added| added.unit).flat_map(|unit| {
-                Form::all_of(unit.description).map(|form| {
-                    let text = model_description(unit.description, StartValues::TABLE, form, None);
+            let added = ADDED_MODELS.iter().map(|added| added.model).flat_map(|model| {
+                Form::all_of(model.description).map(|form| {
+                    let text = model_description(model.description, StartValues::TABLE, form, None);
                     ModelDescription::read(form.directory(), &text)
                 })
             });

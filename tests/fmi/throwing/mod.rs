@@ -9,7 +9,7 @@ use std::ffi::CString;
 
 use importer::{Importer, Language};
 use maglev_fmu::fmi::fmi3::{fmi3InstantiateCoSimulation, fmi3InstantiateScheduledExecution};
-use maglev_fmu::unit::Edition;
+use maglev_fmu::model::Edition;
 
 use super::allocator::blocks;
 use super::harness::{self, BOTH, CONTROLLER, Component, ERROR, OK, Standard, description, instantiate_with};

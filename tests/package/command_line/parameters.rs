@@ -1,12 +1,12 @@
-//! Parameters that do not fit together are refused by every command that takes some, in the words of the unit's own check.
+//! Parameters that do not fit together are refused by every command that takes some, in the words of the model's own check.
 
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
 use maglev_fmu::parameter_file::ParameterFile;
-use maglev_fmu::unit::UnitType;
-use maglev_fmu::unit::system::System;
+use maglev_fmu::model::ModelType;
+use maglev_fmu::model::system::System;
 use object::Architecture;
 use serde_json::json;
 
@@ -23,16 +23,16 @@ const MISFITS: [Misfit; 5] = [
     ("bearing", "plant", &[("sensor.sample_time", 1e-9)]),
 ];
 
-fn unit(system: &str, role: &str) -> &'static UnitType {
+fn model(system: &str, role: &str) -> &'static ModelType {
     let system = System::find(system).unwrap();
     if role == "plant" { system.plant } else { system.controller }
 }
 
-/// What the unit itself says of the values.
-fn refusal(unit: &UnitType, values: &[(&str, f64)]) -> String {
-    let mut made = (unit.create)();
+/// What the model itself says of the values.
+fn refusal(model: &ModelType, values: &[(&str, f64)]) -> String {
+    let mut made = (model.create)();
     for (name, value) in values {
-        let (reference, variable) = unit.description.find(name).unwrap();
+        let (reference, variable) = model.description.find(name).unwrap();
         variable.check(*value).unwrap();
         made.values_mut()[reference] = *value;
     }
@@ -57,7 +57,7 @@ fn a_name_given_twice_is_refused() {
 
 /// Guards: the limit of the controller, which the plant refused in turn.
 #[test]
-fn a_trace_names_a_step_that_both_units_accept() {
+fn a_trace_names_a_step_that_both_models_accept() {
     let directory = tempfile::tempdir().unwrap();
     for system in ["bearing", "ball", "rig"] {
         let trace = |step: &str| {
@@ -78,10 +78,10 @@ fn a_trace_names_a_step_that_both_units_accept() {
 #[test]
 fn keys_are_told_in_one_line() {
     let directory = tempfile::tempdir().unwrap();
-    let unit = json!("MaglevRigController");
+    let model = json!("MaglevRigController");
     for file in [
-        json!({ "unit": unit, "values": {}, "a\nerror: b\r\u{1b}[2J": 1 }),
-        json!({ "unit": unit, "values": { "a\nerror: b\r\u{1b}[2J": 1 } }),
+        json!({ "unit": model, "values": {}, "a\nerror: b\r\u{1b}[2J": 1 }),
+        json!({ "unit": model, "values": { "a\nerror: b\r\u{1b}[2J": 1 } }),
         json!({ "unit": "a\nerror: b\r\u{1b}[2J", "values": {} }),
     ] {
         fs::write(directory.path().join("file.json"), file.to_string()).unwrap();
@@ -108,22 +108,22 @@ fn a_trace_starts_with_parameters_that_fit() {
             };
             arguments.extend([format!("--{role}"), assignment]);
         }
-        let said = refusal(unit(system, role), values);
+        let said = refusal(model(system, role), values);
         assert_eq!(maglev_fmu(directory.path(), &arguments), (Some(1), format!("error: {said}\n")));
     }
 }
 
-/// Guards: packages whose units can never be initialised.
+/// Guards: packages whose models can never be initialised.
 #[test]
 fn no_package_starts_with_parameters_that_do_not_fit() {
     let directory = tempfile::tempdir().unwrap();
     let library = library_file::write_library(directory.path(), Architecture::X86_64);
     for (system, role, values) in MISFITS {
-        let unit = unit(system, role);
-        let said = refusal(unit, values);
+        let model = model(system, role);
+        let said = refusal(model, values);
         let values: serde_json::Map<_, _> =
             values.iter().map(|(name, value)| ((*name).to_owned(), json!(value))).collect();
-        let file = json!({ "unit": unit.description.name, "values": &values });
+        let file = json!({ "unit": model.description.name, "values": &values });
         fs::write(directory.path().join("misfit.json"), file.to_string()).unwrap();
         let arguments = format!("build --parameters misfit.json --library {}", library.display());
         let expected = (Some(1), format!("error: misfit.json: {said}\n"));
@@ -131,7 +131,7 @@ fn no_package_starts_with_parameters_that_do_not_fit() {
         assert!(!directory.path().join("dist").exists());
 
         let assignments = values.iter().map(|(name, value)| (name.as_str(), value.clone()));
-        let refused = ParameterFile::new(unit.description, assignments, json!(null)).unwrap_err();
+        let refused = ParameterFile::new(model.description, assignments, json!(null)).unwrap_err();
         assert_eq!(refused.to_string(), said, "a file that could not be read again");
     }
 }

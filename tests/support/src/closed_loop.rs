@@ -1,10 +1,10 @@
 //! The native loop of a system with some parameters.
 
-use maglev_fmu::unit::{ClosedLoop, ExchangeOrder, System};
+use maglev_fmu::model::{ClosedLoop, ExchangeOrder, System};
 
 use crate::values::{get, set};
 
-/// Both units of a system, started at 0 s; the controller goes first, every step is one of its sample times.
+/// Both models of a system, started at 0 s; the controller goes first, every step is one of its sample times.
 pub fn closed_loop(
     system: &System,
     plant_values: &[(&str, f64)],

@@ -1,4 +1,4 @@
-//! A unit behind the C boundary, stepped as an importer would.
+//! A model behind the C boundary, stepped as an importer would.
 
 use core::ffi::c_void;
 use std::hint::black_box;
@@ -8,11 +8,11 @@ use maglev_fmu::fmi::fmi2::{
     fmi2Reset, fmi2SetReal,
 };
 use maglev_fmu::fmi::{Callback, Instance, Interface, Logger};
-use maglev_fmu::unit::Unit;
+use maglev_fmu::model::Model;
 
 /// Value reference of a variable.
-pub fn reference(unit: &dyn Unit, name: &str) -> u32 {
-    unit.description().find(name).expect("a variable of the table").0 as u32
+pub fn reference(model: &dyn Model, name: &str) -> u32 {
+    model.description().find(name).expect("a variable of the table").0 as u32
 }
 
 /// An instance with `INPUTS` inputs that are set before every step and four outputs that are read after it.
@@ -23,21 +23,21 @@ pub struct Component<const INPUTS: usize> {
 }
 
 impl<const INPUTS: usize> Component<INPUTS> {
-    /// `unit` with some values; reset goes back to it as given here.
+    /// `model` with some values; reset goes back to it as given here.
     pub fn new(
-        mut unit: impl Unit + 'static,
+        mut model: impl Model + 'static,
         inputs: [&str; INPUTS],
         outputs: [&str; 4],
         values: &[(&str, f64)],
     ) -> Self {
         for (name, value) in values {
-            let reference = reference(&unit, name) as usize;
-            unit.values_mut()[reference] = *value;
+            let reference = reference(&model, name) as usize;
+            model.values_mut()[reference] = *value;
         }
-        let inputs = inputs.map(|name| reference(&unit, name));
-        let outputs = outputs.map(|name| reference(&unit, name));
+        let inputs = inputs.map(|name| reference(&model, name));
+        let outputs = outputs.map(|name| reference(&model, name));
         let logger = Logger::new(Callback::None, c"bench", false).unwrap();
-        let instance = Instance::new(Box::new(unit), Interface::CoSimulation, logger).unwrap();
+        let instance = Instance::new(Box::new(model), Interface::CoSimulation, logger).unwrap();
         Self { handle: Box::into_raw(Box::new(instance)).cast(), inputs, outputs }
     }
 

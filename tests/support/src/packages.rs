@@ -1,4 +1,4 @@
-//! The units of this build, packaged and opened by the host.
+//! The models of this build, packaged and opened by the host.
 
 use std::fs::{self, OpenOptions};
 use std::io::{Read, Seek, Write};
@@ -9,14 +9,14 @@ use maglev_fmu::host::{Fmu, Instance, Logging};
 use maglev_fmu::package::{Form, GenerationTime, Library, build};
 
 /// An FMU; a version stands for its plain form.
-pub fn open(form: impl Into<Form>, unit: &str) -> Fmu {
-    let path = directory().join(form.into().directory()).join(unit).with_extension("fmu");
+pub fn open(form: impl Into<Form>, model: &str) -> Fmu {
+    let path = directory().join(form.into().directory()).join(model).with_extension("fmu");
     Fmu::open(&path).unwrap()
 }
 
 /// An instance with parameters, logging on, to be initialised.
-pub fn instantiate(form: impl Into<Form>, unit: &str, parameters: &[(&str, f64)]) -> Instance {
-    let mut instance = open(form, unit).instantiate(unit, Logging::On).unwrap();
+pub fn instantiate(form: impl Into<Form>, model: &str, parameters: &[(&str, f64)]) -> Instance {
+    let mut instance = open(form, model).instantiate(model, Logging::On).unwrap();
     for (name, value) in parameters {
         let handle = instance.variable(name).unwrap();
         instance.set(handle, *value).unwrap();

@@ -4,13 +4,13 @@
 //! a = exp(-T / tau) and u the voltage that acted.
 
 use maglev_fmu::controller::saturate;
-use maglev_fmu::unit::controller_choices::VoltageSource;
-use maglev_fmu::unit::longest_step::longest_step;
-use maglev_fmu::unit::quantity::{self, DURATION, Enumeration, POSITION_GAIN, VELOCITY_GAIN};
-use maglev_fmu::unit::sampled_controller::{ObserverAndLaw, Sample, SampledController};
-use maglev_fmu::unit::start_delay::start_delay;
-use maglev_fmu::unit::variable::{Kind, Variability, Variable, variable_table};
-use maglev_fmu::unit::{Description, Journal};
+use maglev_fmu::model::controller_choices::VoltageSource;
+use maglev_fmu::model::longest_step::longest_step;
+use maglev_fmu::model::quantity::{self, DURATION, Enumeration, POSITION_GAIN, VELOCITY_GAIN};
+use maglev_fmu::model::sampled_controller::{ObserverAndLaw, Sample, SampledController};
+use maglev_fmu::model::start_delay::start_delay;
+use maglev_fmu::model::variable::{Kind, Variability, Variable, variable_table};
+use maglev_fmu::model::{Description, Journal};
 use serde::{Deserialize, Serialize};
 
 use super::{

@@ -1,25 +1,25 @@
 //! A cart on a rail and a controller that moves it to a place: a plant and a controller that the library does not have.
 //!
-//! A program that links this crate has them beside the library's units, so that tests of what holds for every unit hold for
+//! A program that links this crate has them beside the library's models, so that tests of what holds for every model hold for
 //! one that they have never seen. What is here is all that a new plant and a new controller take.
 
 mod controller;
 mod plant;
 
 use linkme::distributed_slice;
-use maglev_fmu::unit::quantity::Quantity;
-use maglev_fmu::unit::system::{System, USE_APPLIED_VOLTAGE};
-use maglev_fmu::unit::unit_of_measure::{KILOGRAM, METRE, METRE_PER_SECOND, NEWTON_PER_VOLT, VOLT};
-use maglev_fmu::unit::{ADDED_SYSTEMS, ADDED_UNITS, Registration, UnitType};
+use maglev_fmu::model::quantity::Quantity;
+use maglev_fmu::model::system::{System, USE_APPLIED_VOLTAGE};
+use maglev_fmu::model::unit_of_measure::{KILOGRAM, METRE, METRE_PER_SECOND, NEWTON_PER_VOLT, VOLT};
+use maglev_fmu::model::{ADDED_SYSTEMS, ADDED_MODELS, Registration, ModelType};
 
-static PLANT: UnitType = UnitType::of::<plant::CartPlant>(&plant::DESCRIPTION);
+static PLANT: ModelType = ModelType::of::<plant::CartPlant>(&plant::DESCRIPTION);
 
-static CONTROLLER: UnitType = UnitType::of::<controller::CartController>(&controller::DESCRIPTION);
+static CONTROLLER: ModelType = ModelType::of::<controller::CartController>(&controller::DESCRIPTION);
 
-#[distributed_slice(ADDED_UNITS)]
+#[distributed_slice(ADDED_MODELS)]
 static PLANT_REGISTRATION: Registration = Registration::of::<plant::CartPlant>(&PLANT, ICON);
 
-#[distributed_slice(ADDED_UNITS)]
+#[distributed_slice(ADDED_MODELS)]
 static CONTROLLER_REGISTRATION: Registration =
     Registration::of::<controller::CartController>(&CONTROLLER, ICON);
 

@@ -2,13 +2,13 @@
 
 use maglev_fmu::plant::runge_kutta;
 use maglev_fmu::scalar::Scalar;
-use maglev_fmu::unit::continuous_plant::{ContinuousPlant, Motion, PlantEquations};
-use maglev_fmu::unit::quantity::Quantity;
-use maglev_fmu::unit::sensor::{SensorVariables, sensor_variables};
-use maglev_fmu::unit::unit_of_measure::{METRE_PER_SECOND_SQUARED, NEWTON_SECOND_PER_METRE};
-use maglev_fmu::unit::variable::{Kind, Variability, Variable, variable_table};
-use maglev_fmu::unit::work::Load;
-use maglev_fmu::unit::{Description, quantity};
+use maglev_fmu::model::continuous_plant::{ContinuousPlant, Motion, PlantEquations};
+use maglev_fmu::model::quantity::Quantity;
+use maglev_fmu::model::sensor::{SensorVariables, sensor_variables};
+use maglev_fmu::model::unit_of_measure::{METRE_PER_SECOND_SQUARED, NEWTON_SECOND_PER_METRE};
+use maglev_fmu::model::variable::{Kind, Variability, Variable, variable_table};
+use maglev_fmu::model::work::Load;
+use maglev_fmu::model::{Description, quantity};
 use serde::{Deserialize, Serialize};
 
 use super::{

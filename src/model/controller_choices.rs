@@ -1,0 +1,19 @@
+//! Choices that several controllers offer.
+
+use super::choice::choice;
+
+choice! {
+    /// Which voltage an observer is told.
+    pub enum VoltageSource = "VoltageSource", "Which voltage the observer believes acted over the last sample" {
+        Command = "command", "The voltage this model put out";
+        Applied = "applied", "The input voltage_applied, right in every exchange order";
+    }
+}
+
+choice! {
+    /// What a law is fed with besides the measured position.
+    pub enum Feedback = "Feedback", "What the law is fed with besides the measured position" {
+        Estimate = "estimate", "The observer's estimate";
+        State = "state", "The inputs state.*, for comparison";
+    }
+}

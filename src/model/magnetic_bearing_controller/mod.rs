@@ -1,0 +1,12 @@
+//! Exported model `MagneticBearingController`: observers and control laws as a sampled-data system.
+
+mod observer_and_law;
+mod parameters;
+mod table;
+
+use super::sampled_controller::SampledController;
+use observer_and_law::BearingObserverAndLaw;
+pub use table::DESCRIPTION;
+
+/// The controller as a model.
+pub type MagneticBearingController = SampledController<BearingObserverAndLaw, { table::COUNT }>;
