@@ -4,9 +4,9 @@
 
 mod measure;
 
-use maglev_fmu::signal::BallReference;
 use maglev_fmu::model::system::BALL;
 use maglev_fmu::model::{ClosedLoop, ExchangeOrder, LevitatedBallController, LevitatedBallPlant};
+use maglev_fmu::signal::BallReference;
 use maglev_fmu_test::component::Component;
 use maglev_fmu_test::values::{get, set};
 use measure::{Candidate, medians, verdict};

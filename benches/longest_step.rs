@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use maglev_fmu::model::{Silence, MODELS, ModelError};
+use maglev_fmu::model::{MODELS, ModelError, NullLogSink};
 
 /// Models with parameters that make their steps expensive, each in its own way.
 const CANDIDATES: &[(&str, &[(&str, f64)])] = &[
@@ -70,14 +70,14 @@ fn main() {
             for k in 0..8 {
                 model.values_mut()[sensed] += 1e-3 * f64::from(k % 3);
                 let sample_time = model.values()[row("sample_time")];
-                model.advance(sample_time, &mut Silence).expect("a step");
+                model.advance(sample_time, &mut NullLogSink).expect("a step");
             }
         }
-        let Err(ModelError::StepTooLong { limit, .. }) = model.advance(1e15, &mut Silence) else {
+        let Err(ModelError::StepTooLong { limit, .. }) = model.advance(1e15, &mut NullLogSink) else {
             unreachable!("no model here takes such a step")
         };
         let begin = Instant::now();
-        model.advance(limit, &mut Silence).expect("the longest step");
+        model.advance(limit, &mut NullLogSink).expect("the longest step");
         let (seconds, target) = (begin.elapsed().as_secs_f64(), 1.5);
         let word = if seconds <= target { "met" } else { "MISSED" };
         println!("{seconds:>6.2} s, target <= {target} s {word}: {limit:.3e} s of {name} {parameters:?}");

@@ -5,7 +5,7 @@ mod measure;
 use std::error::Error;
 use std::path::Path;
 
-use maglev_fmu::host::{ExchangeOrder, Fmu, Logging, ControlLoop};
+use maglev_fmu::host::{ControlLoop, ExchangeOrder, Fmu, Logging};
 use maglev_fmu::package::{FmiVersion, GenerationTime, Library, build};
 use measure::{Candidate, medians, verdict};
 
@@ -32,7 +32,11 @@ impl PackagedLoop {
             &[("position_measured", "position"), ("voltage_measured", "voltage_applied")],
             &[("voltage", "voltage")],
         )?;
-        models.record(&[("plant", "position"), ("controller", "voltage"), ("controller", "estimate.flux")])?;
+        models.record(&[
+            ("plant", "position"),
+            ("controller", "voltage"),
+            ("controller", "estimate.flux"),
+        ])?;
         models.initialise(0.0, None, STEP_SIZE)?;
         Ok(Self(models))
     }

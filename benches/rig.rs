@@ -6,12 +6,12 @@ mod measure;
 
 use std::hint::black_box;
 
+use maglev_fmu::model::system::RIG;
+use maglev_fmu::model::{ClosedLoop, ExchangeOrder, MaglevRigController, MaglevRigPlant};
 use maglev_fmu::observer::extended_state::{
     ExtendedState, ExtendedStateModel, Injection, LinearInjection, NonlinearInjection, gains_from_bandwidth,
 };
 use maglev_fmu::observer::extended_state_exact::ExactPredictor;
-use maglev_fmu::model::system::RIG;
-use maglev_fmu::model::{ClosedLoop, ExchangeOrder, MaglevRigController, MaglevRigPlant};
 use maglev_fmu_test::component::Component;
 use maglev_fmu_test::values::{get, set};
 use measure::{Candidate, medians, verdict};

@@ -10,14 +10,14 @@
 mod measure;
 
 use maglev_fmu::controller::bearing_feedback::{self, Gains, Law};
-use maglev_fmu::plant::magnetic_bearing::State;
-use maglev_fmu::signal::GaussianNoise;
 use maglev_fmu::model::sample_clock::SampleClock;
 use maglev_fmu::model::system::BEARING;
 use maglev_fmu::model::{
-    ClosedLoop, Description, ExchangeOrder, Journal, MagneticBearingController, MagneticBearingPlant, Model,
+    ClosedLoop, Description, ExchangeOrder, LogSink, MagneticBearingController, MagneticBearingPlant, Model,
     ModelError,
 };
+use maglev_fmu::plant::magnetic_bearing::State;
+use maglev_fmu::signal::GaussianNoise;
 use maglev_fmu_test::component::{Component, reference};
 use maglev_fmu_test::printed_newton;
 use maglev_fmu_test::values::get;
@@ -114,7 +114,7 @@ impl Model for Baseline {
     fn values_mut(&mut self) -> &mut [f64] {
         self.controller.values_mut()
     }
-    fn adopt_parameters(&mut self) {}
+    fn apply_tunable_parameters(&mut self) {}
     fn initialise(&mut self, start_time: f64) -> Result<(), ModelError> {
         self.clock = SampleClock::new(T, start_time);
         Ok(())
@@ -123,7 +123,7 @@ impl Model for Baseline {
         Ok(())
     }
 
-    fn advance(&mut self, duration: f64, _: &mut dyn Journal) -> Result<(), ModelError> {
+    fn advance(&mut self, duration: f64, _: &mut dyn LogSink) -> Result<(), ModelError> {
         for _ in self.clock.advance(duration) {
             if self.iterations > 0 {
                 self.tick();

@@ -11,6 +11,7 @@ mod file;
 pub mod fmi;
 #[cfg(feature = "tools")]
 pub mod host;
+pub mod model;
 pub mod observer;
 #[cfg(feature = "tools")]
 pub mod package;
@@ -21,4 +22,3 @@ pub mod scalar;
 pub mod signal;
 #[cfg(feature = "tools")]
 pub mod study;
-pub mod model;

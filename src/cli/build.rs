@@ -4,9 +4,9 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use maglev_fmu::model::{Description, StartValues};
 use maglev_fmu::package::{self, GenerationTime, Library};
 use maglev_fmu::parameter_file::ParameterFile;
-use maglev_fmu::model::{Description, StartValues};
 
 use super::output::{report, say};
 

@@ -7,13 +7,13 @@ use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use maglev_fmu::host::Value;
+use maglev_fmu::model::system::RIG;
 use maglev_fmu::parameter_file::ParameterFile;
 use maglev_fmu::study::output;
 use maglev_fmu::study::report::quantity;
 use maglev_fmu::study::tuning::candidate::ObserverKind;
 use maglev_fmu::study::tuning::settings::SwarmSettings;
 use maglev_fmu::study::tuning::{Objective, Tuned, convergence, noise_aware, tune};
-use maglev_fmu::model::system::RIG;
 use serde_json::json;
 
 use super::output::{report, say, with_room_beside};

@@ -62,7 +62,7 @@ impl Instance {
             target[*reference as usize] = convert(*value);
         }
         if is_before_first_step {
-            self.is_stale = true;
+            self.needs_initialisation = true;
         } else {
             self.needs_evaluation = true;
         }
@@ -80,7 +80,8 @@ impl Instance {
             values[reference as usize] = value;
         }
         let model = &mut self.model;
-        let fit = in_default_environment(|| model.check_parameters().map(|()| model.adopt_parameters()));
+        let fit =
+            in_default_environment(|| model.check_parameters().map(|()| model.apply_tunable_parameters()));
         if let Err(error) = fit {
             model.values_mut().copy_from_slice(before);
             return Err(error.into());
@@ -92,7 +93,8 @@ impl Instance {
     /// Calculated values follow parameters and inputs until the first step.
     #[inline]
     pub(super) fn refresh_before_first_step(&mut self) -> Result<(), CallError> {
-        if self.is_stale && matches!(self.phase, Phase::Instantiated | Phase::InitializationMode) {
+        if self.needs_initialisation && matches!(self.phase, Phase::Instantiated | Phase::InitializationMode)
+        {
             self.refresh()?;
         }
         Ok(())

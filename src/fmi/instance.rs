@@ -6,12 +6,12 @@ use super::earliest_time::EarliestTime;
 use super::floating_point::in_default_environment;
 use super::fmi3::types::{fmi3ClockUpdateCallback, fmi3InstanceEnvironment};
 use super::intermediate_update::{IntermediateUpdate, StepInProgress};
-use super::saved_state::Life;
+use super::saved_state::InstanceState;
 use super::ticking::ClockStates;
 use super::{CallError, CommunicationPoint, Function, Interface, Logger, Phase, SavedState, StateError};
 use crate::model::sampled::ClockVariable;
 use crate::model::variable::Variable;
-use crate::model::{ContinuousRows, Edition, Journal, Solver, TIME, Topic, Model};
+use crate::model::{ContinuousRows, Edition, LogSink, Model, Solver, TIME, Topic};
 
 /// What a handle (`fmi2Component`, `fmi3Instance`) points to.
 pub struct Instance {
@@ -31,7 +31,7 @@ pub struct Instance {
     pub(super) earliest_time: EarliestTime,
     pub(super) start_time: f64,
     /// Whether a value was set since the calculated ones were last computed, before the first step.
-    pub(super) is_stale: bool,
+    pub(super) needs_initialisation: bool,
     /// Whether a state or an input was set since what follows from them was last computed, after initialisation.
     pub(super) needs_evaluation: bool,
     pub(super) clocks: ClockStates,
@@ -60,7 +60,7 @@ impl Instance {
             communication: CommunicationPoint::new(0.0, None),
             earliest_time: EarliestTime::at_event(0.0),
             start_time: 0.0,
-            is_stale: true,
+            needs_initialisation: true,
             needs_evaluation: false,
             clocks: ClockStates::default(),
             intermediate_update: None,
@@ -103,21 +103,21 @@ impl Instance {
         self.start_time = start_time;
         self.communication = CommunicationPoint::new(start_time, stop_time);
         self.earliest_time = EarliestTime::at_event(start_time);
-        self.is_stale = true;
+        self.needs_initialisation = true;
         Ok(())
     }
 
     pub(super) fn enter_initialization_mode(&mut self) -> Result<(), CallError> {
         self.phase = Phase::InitializationMode;
-        self.is_stale = true;
+        self.needs_initialisation = true;
         Ok(())
     }
 
     /// Computes all calculated values if something changed since the last time.
     pub(super) fn refresh(&mut self) -> Result<(), CallError> {
-        if self.is_stale {
+        if self.needs_initialisation {
             in_default_environment(|| self.model.initialise(self.start_time))?;
-            self.is_stale = false;
+            self.needs_initialisation = false;
         }
         Ok(())
     }
@@ -135,10 +135,10 @@ impl Instance {
 
     pub(super) fn exit_initialization_mode(&mut self) -> Result<(), CallError> {
         in_default_environment(|| self.model.start(self.start_time))?;
-        self.is_stale = false;
+        self.needs_initialisation = false;
         self.phase = self.interface.first_phase();
         let (name, start_time) = (self.model.description().name, self.start_time);
-        self.note(format_args!("{name} initialised at t = {start_time} s"));
+        self.log_event(format_args!("{name} initialised at t = {start_time} s"));
         Ok(())
     }
 
@@ -155,14 +155,14 @@ impl Instance {
 
     pub(super) fn terminate(&mut self) -> Result<(), CallError> {
         self.phase = Phase::Terminated;
-        self.note(format_args!("terminated at t = {} s", self.communication.now()));
+        self.log_event(format_args!("terminated at t = {} s", self.communication.now()));
         Ok(())
     }
 
     /// Back to the state right after instantiation.
     pub(super) fn reset(&mut self) -> Result<(), CallError> {
         self.restart()?;
-        self.note(format_args!("reset"));
+        self.log_event(format_args!("reset"));
         Ok(())
     }
 
@@ -172,32 +172,55 @@ impl Instance {
     }
 
     /// What a saved state has to tell besides the model.
-    pub(super) fn life(&self) -> Life {
+    pub(super) fn instance_state(&self) -> InstanceState {
         let Self {
-            phase, communication, earliest_time, start_time, is_stale, needs_evaluation, clocks, ..
+            phase,
+            communication,
+            earliest_time,
+            start_time,
+            needs_initialisation,
+            needs_evaluation,
+            clocks,
+            ..
         } = *self;
-        Life { phase, communication, earliest_time, start_time, is_stale, needs_evaluation, clocks }
+        InstanceState {
+            phase,
+            communication,
+            earliest_time,
+            start_time,
+            needs_initialisation,
+            needs_evaluation,
+            clocks,
+        }
     }
 
     /// Goes on from a saved state; the model has been restored.
-    pub(super) fn resume(&mut self, life: Life) {
-        let Life { phase, communication, earliest_time, start_time, is_stale, needs_evaluation, clocks } =
-            life;
+    pub(super) fn resume(&mut self, instance_state: InstanceState) {
+        let InstanceState {
+            phase,
+            communication,
+            earliest_time,
+            start_time,
+            needs_initialisation,
+            needs_evaluation,
+            clocks,
+        } = instance_state;
         self.phase = phase;
         self.communication = communication;
         self.earliest_time = earliest_time;
         self.start_time = start_time;
-        self.is_stale = is_stale;
+        self.needs_initialisation = needs_initialisation;
         self.needs_evaluation = needs_evaluation;
         self.clocks = clocks;
         self.step = None;
         // The state may be that of an instance with another interface.
         let is_new = say_who_solves(&mut *self.model, self.interface);
-        self.is_stale |= is_new && matches!(phase, Phase::Instantiated | Phase::InitializationMode);
+        self.needs_initialisation |=
+            is_new && matches!(phase, Phase::Instantiated | Phase::InitializationMode);
     }
 
-    pub(super) fn note(&mut self, message: fmt::Arguments<'_>) {
-        self.logger.note(Topic::Events, message);
+    pub(super) fn log_event(&mut self, message: fmt::Arguments<'_>) {
+        self.logger.log(Topic::Events, message);
     }
 }
 

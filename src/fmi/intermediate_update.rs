@@ -161,7 +161,11 @@ mod tests {
             let count = model.description.variables.len();
             let all: Vec<u32> = (0..count as u32).collect();
             let registered = RegisteredVariables::new(&all, count).unwrap();
-            assert!(all.iter().all(|reference| registered.contains(*reference)), "{}", model.description.name);
+            assert!(
+                all.iter().all(|reference| registered.contains(*reference)),
+                "{}",
+                model.description.name
+            );
             assert!(!registered.contains(count as u32) && !registered.contains(u32::MAX));
             let refused = CallError::UnknownReference { reference: count as u32, largest: count - 1 };
             assert_eq!(RegisteredVariables::new(&[count as u32], count).err(), Some(refused));

@@ -8,7 +8,7 @@ use super::fmi3::types::{fmi3InstanceEnvironment, fmi3LogMessageCallback};
 use super::message::{Message, Outbox};
 use super::{CallError, Status};
 use crate::model::memory::{OutOfMemory, try_vector};
-use crate::model::{Journal, Topic};
+use crate::model::{LogSink, Topic};
 
 /// Declared log categories: name in the model description and description.
 pub const LOG_CATEGORIES: [(&CStr, &str); 4] = [
@@ -163,13 +163,13 @@ impl Logger {
     }
 }
 
-impl Journal for Logger {
-    fn wants(&self, topic: Topic) -> bool {
+impl LogSink for Logger {
+    fn enabled(&self, topic: Topic) -> bool {
         self.enabled[category_of(topic)] && !matches!(self.callback, Callback::None)
     }
 
-    fn note(&mut self, topic: Topic, message: fmt::Arguments<'_>) {
-        if self.wants(topic) {
+    fn log(&mut self, topic: Topic, message: fmt::Arguments<'_>) {
+        if self.enabled(topic) {
             self.push(Status::Ok, category_of(topic), message);
         }
     }

@@ -26,7 +26,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 const MARK: [u8; 8] = *b"maglevFS";
-/// To be raised whenever a model's fields or [`Life`] change.
+/// To be raised whenever a model's fields or [`InstanceState`] change.
 const VERSION: u32 = 5;
 
 const TOKEN: core::ops::Range<usize> = 16..54;
@@ -57,7 +57,7 @@ pub enum StateError {
     #[error("checksum {got:08x}: expected {expected:08x}, the bytes are damaged")]
     Checksum { got: u32, expected: u32 },
     #[error("a state whose phase and times are not readable")]
-    Life,
+    InstanceState,
     #[error("a state in the phase \"{got}\", which this instance never reaches")]
     OtherPhase { got: &'static str },
     #[error(
@@ -89,19 +89,19 @@ impl fmt::Display for TokenName {
 
 /// Where an instance stands in its life.
 #[derive(Serialize, Deserialize)]
-pub(super) struct Life {
+pub(super) struct InstanceState {
     pub phase: Phase,
     pub communication: CommunicationPoint,
     pub earliest_time: EarliestTime,
     pub start_time: f64,
     /// See [`Instance`].
-    pub is_stale: bool,
+    pub needs_initialisation: bool,
     /// See [`Instance`].
     pub needs_evaluation: bool,
     pub clocks: ClockStates,
 }
 
-impl Life {
+impl InstanceState {
     /// Whether an instance that may be in the phases that `reaches` names could have been saved so.
     fn check(&self, reaches: impl Fn(Phase) -> bool) -> Result<(), StateError> {
         let Self { phase, start_time, .. } = *self;
@@ -112,7 +112,7 @@ impl Life {
         if !(self.communication.is_possible_after(start_time) && self.earliest_time.is_finite()) {
             return Err(StateError::Times { now, start_time });
         }
-        if self.is_stale && !matches!(phase, Phase::Instantiated | Phase::InitializationMode) {
+        if self.needs_initialisation && !matches!(phase, Phase::Instantiated | Phase::InitializationMode) {
             return Err(StateError::Stale(phase.name()));
         }
         Ok(())
@@ -207,16 +207,21 @@ impl SavedState {
 }
 
 impl SavedState {
-    /// The life and the bytes of the model, for an instance of `model` that was made for `interface`.
-    fn read(&self, model: &'static Description, interface: Interface) -> Result<(Life, &[u8]), StateError> {
+    /// The state of the instance and the bytes of the model, for an instance of `model` that was made for `interface`.
+    fn read(
+        &self,
+        model: &'static Description,
+        interface: Interface,
+    ) -> Result<(InstanceState, &[u8]), StateError> {
         if !core::ptr::eq(self.model, model) {
             let mut token = [0; TOKEN.end - TOKEN.start];
             token.copy_from_slice(self.model.token().as_str().as_bytes());
             return Err(StateError::OtherModel { got: TokenName(token), expected: model.name });
         }
-        let (life, model) = postcard::take_from_bytes::<Life>(self.payload()).map_err(|_| StateError::Life)?;
-        life.check(|phase| interface.reaches(phase))?;
-        Ok((life, model))
+        let (instance_state, model) = postcard::take_from_bytes::<InstanceState>(self.payload())
+            .map_err(|_| StateError::InstanceState)?;
+        instance_state.check(|phase| interface.reaches(phase))?;
+        Ok((instance_state, model))
     }
 }
 
@@ -238,29 +243,31 @@ impl Instance {
         state.model = self.model.description();
         // Nothing to restore, should the rest fail.
         state.length = 0;
-        let life = postcard::to_slice(&self.life(), &mut state.payload).map_err(|_| StateError::Life)?.len();
-        state.length = life + self.model.save(&mut state.payload[life..])?;
+        let length = postcard::to_slice(&self.instance_state(), &mut state.payload)
+            .map_err(|_| StateError::InstanceState)?
+            .len();
+        state.length = length + self.model.save(&mut state.payload[length..])?;
         Ok(())
     }
 
     pub(super) fn restore(&mut self, state: &SavedState) -> Result<(), StateError> {
-        let (life, model) = state.read(self.model.description(), self.interface)?;
-        self.model.restore(model, !life.is_stale)?;
-        self.resume(life);
+        let (instance_state, model) = state.read(self.model.description(), self.interface)?;
+        self.model.restore(model, !instance_state.needs_initialisation)?;
+        self.resume(instance_state);
         Ok(())
     }
 
     /// As [`Instance::restore`], from the state in which the instance was made.
     pub(super) fn restart(&mut self) -> Result<(), StateError> {
-        let (life, model) = self.start.read(self.model.description(), self.interface)?;
-        self.model.restore(model, !life.is_stale)?;
-        self.resume(life);
+        let (instance_state, model) = self.start.read(self.model.description(), self.interface)?;
+        self.model.restore(model, !instance_state.needs_initialisation)?;
+        self.resume(instance_state);
         Ok(())
     }
 
     /// Whether [`Instance::restore`] would work.
     pub(super) fn verify(&self, state: &SavedState) -> Result<(), StateError> {
-        let (life, model) = state.read(self.model.description(), self.interface)?;
-        Ok(self.model.verify(model, !life.is_stale)?)
+        let (instance_state, model) = state.read(self.model.description(), self.interface)?;
+        Ok(self.model.verify(model, !instance_state.needs_initialisation)?)
     }
 }

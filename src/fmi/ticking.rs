@@ -11,7 +11,7 @@
 use super::fraction::time_from;
 use super::{CallError, Instance, Interface, Phase};
 use crate::model::sampled::{CLOCKS, SAMPLE_TIME, TICK, TICKED};
-use crate::model::{SampledModel, TIME, Model};
+use crate::model::{Model, SampledModel, TIME};
 use serde::{Deserialize, Serialize};
 
 /// Clocks at one instant.
@@ -59,7 +59,7 @@ impl Instance {
         match model.clock().until_tick_within(duration) {
             Some(wait) if may_return_early => {
                 // However long the step that was asked for, the part up to the tick computes nothing.
-                model.require_bearable_step(wait)?;
+                model.require_within_longest_step(wait)?;
                 let clock = model.clock_mut();
                 clock.pass(wait);
                 // The importer's time may be off by rounding; a step never goes back nor beyond its end.
@@ -190,7 +190,7 @@ impl Instance {
         }
         if let (Some((row, _)), Some(interval)) = (sample_time, intervals.last()) {
             self.model.values_mut()[row] = interval;
-            self.is_stale = true;
+            self.needs_initialisation = true;
         }
         Ok(())
     }

@@ -9,10 +9,10 @@ use super::archive::Archive;
 use super::description::ModelDescription;
 use super::error::{HostError, Result};
 use super::instance::{Instance, Logging};
-use super::journal::Journal;
 use super::library::LoadedLibrary;
 use super::limits::Limits;
 use super::loaded::{Functions, Loaded};
+use super::message_log::MessageLog;
 use super::{fmi2, fmi3};
 use crate::fmi::FmiVersion;
 
@@ -90,18 +90,18 @@ impl Fmu {
         let c_name = c_text("instance name", name)?;
         let token = c_text("instantiation token", token)?;
         let resources = c_text("resource path", &resources)?;
-        let journal = Arc::new(Journal::default());
+        let message_log = Arc::new(MessageLog::default());
         let log = logging == Logging::On;
-        let component = loaded.functions.instantiate(&c_name, &token, &resources, log, &journal);
+        let component = loaded.functions.instantiate(&c_name, &token, &resources, log, &message_log);
         let Some(component) = component else {
             return Err(HostError::Instantiate {
                 model: loaded.description.model_name.clone(),
                 function: loaded.functions.instantiate_name(),
                 instance: name.to_owned(),
-                log: journal.last_text(),
+                log: message_log.last_text(),
             });
         };
-        Ok(Instance::new(name.to_owned(), component, journal, Arc::clone(&self.loaded)))
+        Ok(Instance::new(name.to_owned(), component, message_log, Arc::clone(&self.loaded)))
     }
 }
 

@@ -8,8 +8,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use super::component::{Answer, Component, Refusal};
 use super::description::ModelDescription;
 use super::error::{HostError, Result};
-use super::journal::{Journal, LogMessage};
 use super::loaded::Loaded;
+use super::message_log::{LogMessage, MessageLog};
 use super::refusal::{Subject, error_of};
 use super::value::Handle;
 use super::variable::Kind;
@@ -40,7 +40,7 @@ enum Phase {
 pub struct Instance {
     name: String,
     pub(super) component: Box<dyn Component>,
-    pub(super) journal: Arc<Journal>,
+    pub(super) message_log: Arc<MessageLog>,
     phase: Cell<Phase>,
     /// Tells instances apart, so that a saved state cannot get into the wrong one.
     pub(super) identity: u64,
@@ -60,13 +60,13 @@ impl Instance {
     pub(super) fn new(
         name: String,
         component: Box<dyn Component>,
-        journal: Arc<Journal>,
+        message_log: Arc<MessageLog>,
         loaded: Arc<Loaded>,
     ) -> Self {
         static NEXT_IDENTITY: AtomicU64 = AtomicU64::new(0);
         let identity = NEXT_IDENTITY.fetch_add(1, Ordering::Relaxed);
         let phase = Cell::new(Phase::Idle);
-        Self { name, component, journal, phase, identity, may_go_back: false, loaded }
+        Self { name, component, message_log, phase, identity, may_go_back: false, loaded }
     }
 
     /// The name given at instantiation.
@@ -81,12 +81,12 @@ impl Instance {
 
     /// What the model logged so far, oldest first; only the last 10 000 messages are kept.
     pub fn log(&self) -> Vec<LogMessage> {
-        self.journal.messages()
+        self.message_log.messages()
     }
 
     /// Forgets the messages logged so far.
     pub fn clear_log(&self) {
-        self.journal.clear();
+        self.message_log.clear();
     }
 
     /// Resolves a scalar variable once, so that it can be accessed often.
@@ -208,7 +208,7 @@ impl Instance {
             Err(Refusal::Termination) => Err(HostError::TerminationRequested {
                 instance: self.name.clone(),
                 time,
-                log: self.journal.last_text(),
+                log: self.message_log.last_text(),
             }),
             answer => self.explain(answer, Subject::none),
         }
@@ -248,7 +248,7 @@ impl Instance {
             // No more calls, not even to free the instance.
             self.phase.set(Phase::Lost);
         }
-        let (instance, log) = (self.name.clone(), self.journal.last_text());
+        let (instance, log) = (self.name.clone(), self.message_log.last_text());
         error_of(refusal, subject, instance, &self.description().model_name, log)
     }
 

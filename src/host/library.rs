@@ -9,7 +9,7 @@ use libloading::Library;
 
 use super::description::{CoSimulation, ModelDescription};
 use super::error::{HostError, Result};
-use super::journal::text_of;
+use super::message_log::text_of;
 use crate::causes::with_causes;
 use crate::fmi::FmiVersion;
 

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use super::archive::Archive;
 use super::component::Component;
 use super::description::ModelDescription;
-use super::journal::Journal;
 use super::library::LoadedLibrary;
+use super::message_log::MessageLog;
 use super::{fmi2, fmi3};
 
 /// Everything an instance needs to stay alive. The order of the fields is the order in which they go:
@@ -41,16 +41,16 @@ impl Functions {
         token: &CStr,
         resources: &CStr,
         logging: bool,
-        journal: &Arc<Journal>,
+        message_log: &Arc<MessageLog>,
     ) -> Option<Box<dyn Component>> {
-        let journal = Arc::clone(journal);
+        let message_log = Arc::clone(message_log);
         match self {
             Self::Two(functions) => {
-                fmi2::FmiTwo::instantiate(*functions, name, token, resources, logging, journal)
+                fmi2::FmiTwo::instantiate(*functions, name, token, resources, logging, message_log)
                     .map(|instance| Box::new(instance) as _)
             }
             Self::Three(functions) => {
-                fmi3::FmiThree::instantiate(**functions, name, token, resources, logging, journal)
+                fmi3::FmiThree::instantiate(**functions, name, token, resources, logging, message_log)
                     .map(|instance| Box::new(instance) as _)
             }
         }

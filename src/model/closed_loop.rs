@@ -1,7 +1,7 @@
 //! Plant and controller of a system, wired natively, without FMI: what a master of the packaged models has to reproduce.
 
 use super::system::{System, Wire};
-use super::{Silence, Model, ModelError};
+use super::{Model, ModelError, NullLogSink};
 use crate::exchange_order::ExchangeOrder;
 
 /// Two models that step together.
@@ -70,7 +70,7 @@ impl ClosedLoop {
     /// Those of [`Model::advance`].
     pub fn step_controller(&mut self) -> Result<(), ModelError> {
         self.sense();
-        self.controller.advance(self.step_size, &mut Silence)
+        self.controller.advance(self.step_size, &mut NullLogSink)
     }
 
     /// Second half: the plant takes what the controller has computed and moves on.
@@ -79,7 +79,7 @@ impl ClosedLoop {
     /// Those of [`Model::advance`].
     pub fn step_plant(&mut self) -> Result<(), ModelError> {
         self.actuate();
-        self.plant.advance(self.step_size, &mut Silence)
+        self.plant.advance(self.step_size, &mut NullLogSink)
     }
 
     /// A step in the order of the loop.
@@ -93,8 +93,8 @@ impl ClosedLoop {
                 self.step_plant()
             }
             ExchangeOrder::Parallel => {
-                self.plant.advance(self.step_size, &mut Silence)?;
-                self.controller.advance(self.step_size, &mut Silence)?;
+                self.plant.advance(self.step_size, &mut NullLogSink)?;
+                self.controller.advance(self.step_size, &mut NullLogSink)?;
                 self.sense();
                 self.actuate();
                 Ok(())

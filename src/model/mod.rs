@@ -44,7 +44,7 @@ use core::fmt;
 
 pub use crate::exchange_order::ExchangeOrder;
 pub use closed_loop::ClosedLoop;
-pub use continuous::{ContinuousRows, ContinuousModel, Solver};
+pub use continuous::{ContinuousModel, ContinuousRows, Solver};
 pub use description::Description;
 pub use edition::Edition;
 pub use levitated_ball_controller::LevitatedBallController;
@@ -57,7 +57,7 @@ pub use persistence::Persistent;
 #[cfg(feature = "tools")]
 pub use registry::Registration;
 #[cfg(feature = "added-models")]
-pub use registry::{ADDED_SYSTEMS, ADDED_MODELS};
+pub use registry::{ADDED_MODELS, ADDED_SYSTEMS};
 pub use registry::{ModelType, editions, editions_of, models};
 pub use sampled::SampledModel;
 pub use start_values::StartValues;
@@ -76,20 +76,20 @@ pub enum Topic {
 }
 
 /// Where remarks go. Nothing is formatted or stored unless the topic is wanted.
-pub trait Journal {
-    fn wants(&self, topic: Topic) -> bool;
-    fn note(&mut self, topic: Topic, message: fmt::Arguments<'_>);
+pub trait LogSink {
+    fn enabled(&self, topic: Topic) -> bool;
+    fn log(&mut self, topic: Topic, message: fmt::Arguments<'_>);
 }
 
-/// A journal that wants nothing.
-pub struct Silence;
+/// Discards everything.
+pub struct NullLogSink;
 
-impl Journal for Silence {
-    fn wants(&self, _: Topic) -> bool {
+impl LogSink for NullLogSink {
+    fn enabled(&self, _: Topic) -> bool {
         false
     }
 
-    fn note(&mut self, _: Topic, _: fmt::Arguments<'_>) {}
+    fn log(&mut self, _: Topic, _: fmt::Arguments<'_>) {}
 }
 
 /// Why a model refused to run; it is left as it was before the call.
@@ -147,7 +147,7 @@ pub trait Model: Persistent + Send {
     fn values_mut(&mut self) -> &mut [f64];
 
     /// Takes over tunable parameters that were set since the last step; initialisation does so, too.
-    fn adopt_parameters(&mut self);
+    fn apply_tunable_parameters(&mut self);
 
     /// Whether the parameters fit together. Asked when they are all set, which is at the start, when tunable ones were set
     /// since, and when they come from a file: in between an importer may be about to set another one.
@@ -169,7 +169,7 @@ pub trait Model: Persistent + Send {
     fn check_step(&self, duration: f64) -> Result<(), ModelError>;
 
     /// Lets `duration` \[s\], positive and finite, pass with the present inputs held.
-    fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), ModelError>;
+    fn advance(&mut self, duration: f64, sink: &mut dyn LogSink) -> Result<(), ModelError>;
 
     /// The model as one that acts at ticks, if it is: exactly those are whose description says so.
     fn sampled(&mut self) -> Option<&mut dyn SampledModel> {

@@ -3,7 +3,7 @@
 use super::longest_step::check_step;
 use super::sample_clock::SampleClock;
 use super::work::{LARGEST_WORK, Load, require_affordable};
-use super::{Description, Edition, Journal, ModelError};
+use super::{Description, Edition, LogSink, ModelError};
 
 /// Intervals of a clock that any step may span, so that short steps need not be judged.
 const ALWAYS_AFFORDABLE: f64 = 4.0;
@@ -21,7 +21,7 @@ pub trait SampledModel {
     fn clock_mut(&mut self) -> &mut SampleClock;
 
     /// Reads the inputs and sets the outputs as at `time` \[s\]. The caller keeps the clock.
-    fn tick(&mut self, time: f64, journal: &mut dyn Journal);
+    fn tick(&mut self, time: f64, sink: &mut dyn LogSink);
 
     /// Longest step that is accepted \[s\], see [`super::longest_step`].
     fn longest_step(&self) -> f64;
@@ -41,12 +41,12 @@ pub trait SampledModel {
                 affordable => affordable?,
             }
         }
-        self.require_bearable_step(duration)
+        self.require_within_longest_step(duration)
     }
 
     /// Refuses a step over `duration` \[s\] that the loop would not bear.
     #[inline]
-    fn require_bearable_step(&self, duration: f64) -> Result<(), ModelError> {
+    fn require_within_longest_step(&self, duration: f64) -> Result<(), ModelError> {
         check_step(self.clock().time(), duration, self.longest_step())
     }
 }

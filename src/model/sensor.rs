@@ -108,10 +108,10 @@ pub(super) fn check_sample_time(value: f64) -> Result<(), ModelError> {
     Err(ModelError::Unusable { name: NAME, value, unit: DURATION.unit.name, expected })
 }
 
-/// A `value` with noise of the standard deviation `deviation`; `sample` has that of 1, or is 0 where there is none.
+/// A `value` with noise of the standard deviation `standard_deviation`; `sample` has that of 1, or is 0 where there is none.
 #[inline]
-pub(super) fn noisy<S: Scalar>(value: S, deviation: S, sample: S) -> S {
-    if sample.is_zero() { value } else { value + deviation * sample }
+pub(super) fn noisy<S: Scalar>(value: S, standard_deviation: S, sample: S) -> S {
+    if sample.is_zero() { value } else { value + standard_deviation * sample }
 }
 
 /// Noise, and the clock of the readings if they have one.
@@ -149,10 +149,10 @@ impl Sensor {
         self.clock.is_some() || solver == Solver::Model
     }
 
-    /// A reading of `value` with noise of the standard deviation `deviation`.
+    /// A reading of `value` with noise of the standard deviation `standard_deviation`.
     #[inline]
-    pub(super) fn read(&mut self, value: f64, deviation: f64) -> f64 {
-        if deviation == 0.0 { value } else { noisy(value, deviation, self.sample()) }
+    pub(super) fn read(&mut self, value: f64, standard_deviation: f64) -> f64 {
+        if standard_deviation == 0.0 { value } else { noisy(value, standard_deviation, self.sample()) }
     }
 
     /// The next number of the noise, of standard deviation 1.
@@ -204,11 +204,11 @@ impl Sensor {
 
     /// Goes through the readings of a step up to the last one, which is still to be read.
     #[inline]
-    pub(super) fn skip_to_last(&mut self, duration: f64, deviation: f64) {
+    pub(super) fn skip_to_last(&mut self, duration: f64, standard_deviation: f64) {
         if let Some(clock) = &mut self.clock {
             let readings = clock.advance_through(duration);
             // So that the noise of a reading does not depend on how the time was cut into steps.
-            if deviation != 0.0 {
+            if standard_deviation != 0.0 {
                 for _ in 1..readings.end.saturating_sub(readings.start) {
                     self.noise.sample();
                 }

@@ -18,7 +18,7 @@ pub use super::ball_observer_settings::{
     Adaptation, BallEstimate, BallObserverSettings, FluxEstimator, InitialBallEstimate,
 };
 use super::current_course::{Course, SMALLEST_FLUX};
-use super::flux_mixing::{FluxMixing, normalised};
+use super::drem::{Drem, normalised};
 use super::flux_regression::{FluxRegression, FluxRegressionSettings, Sample, residual_and_slope};
 use super::polynomial_newton::limited_error;
 use crate::plant::levitated_ball::State;
@@ -89,7 +89,7 @@ pub struct BallObserver {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Memory {
     regression: FluxRegression,
-    mixing: FluxMixing,
+    mixing: Drem,
     /// theta^
     offset: f64,
     /// d, learnt: S = U + d, or S = U - (damping - d) I \[1/s\]
@@ -124,9 +124,9 @@ impl Memory {
         };
         let coefficients = regression.coefficients(&constants.regression);
         let mixing = if initial.filters_from_zero {
-            FluxMixing::from_zero(coefficients)
+            Drem::from_zero(coefficients)
         } else {
-            FluxMixing::at_rest(coefficients)
+            Drem::at_rest(coefficients)
         };
         Self {
             mixing,
@@ -304,7 +304,7 @@ fn estimate_offset(settings: &BallObserverSettings, constants: &Constants, memor
     match settings.estimator {
         FluxEstimator::Mixing(mixing) | FluxEstimator::NormalisedMixing { mixing, .. } => {
             if held {
-                memory.mixing = FluxMixing::at_rest(coefficients);
+                memory.mixing = Drem::at_rest(coefficients);
                 return 0.0;
             }
             memory.mixing.advance(&constants.filters, coefficients);

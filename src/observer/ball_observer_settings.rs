@@ -1,6 +1,6 @@
 //! What the levitated ball's observer is told and what it answers.
 
-use super::flux_mixing::MixingSettings;
+use super::drem::MixingSettings;
 use crate::plant::levitated_ball::{LevitatedBall, State};
 use serde::{Deserialize, Serialize};
 
@@ -18,7 +18,7 @@ pub enum Adaptation {
 pub enum FluxEstimator {
     /// Proposition 6
     Mixing(MixingSettings),
-    /// The same with a normalised gain, see [`super::flux_mixing::normalised`]; not in the paper.
+    /// The same with a normalised gain, see [`super::drem::normalised`]; not in the paper.
     NormalisedMixing { mixing: MixingSettings, level: f64 },
     /// Beyond the paper, see [`super::polynomial_newton`].
     Newton {

@@ -77,9 +77,9 @@ impl BearingObserver {
 
     /// Standard deviations of the last estimate, of an observer that knows them.
     #[inline]
-    pub fn deviation(&self) -> Option<State> {
+    pub fn standard_deviation(&self) -> Option<State> {
         match self {
-            Self::Kalman(_, observer) => Some(observer.deviation()),
+            Self::Kalman(_, observer) => Some(observer.standard_deviation()),
             Self::Newton(..) | Self::WindowedNewton(..) | Self::ReducedNewton(..) => None,
         }
     }

@@ -8,7 +8,7 @@
 //! z1' = z2 + L1 phi1(e)      z2' = z3 + L2 phi2(e) + b u      z3' = L3 phi3(e)      e = y - z1        (11)
 //! ```
 //!
-//! Linear (LESO, (12)): phi(e) = e. Nonlinear (NESO): phi_i(e) = fal(e, alpha_i, delta_i), see `han_function`.
+//! Linear (LESO, (12)): phi(e) = e. Nonlinear (NESO): phi_i(e) = fal(e, alpha_i, delta_i), see `fal`.
 //! Nothing here knows the unit of y; z1 is in that unit, z2 per second, z3 and b u per second squared.
 //!
 //! Everything is a plain value without dispatch, so that a tuning loop runs at full speed:
@@ -24,7 +24,7 @@
 //! assert!((z.position - 0.01).abs() < 1e-4);
 //! ```
 
-use super::han_function::{self, HanFunction};
+use super::fal::{self, Fal};
 use serde::{Deserialize, Serialize};
 
 /// Estimate z of an extended state observer; y stands for the unit of the measurement.
@@ -105,13 +105,13 @@ impl Injection for LinearInjection {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NonlinearInjection {
     pub gains: Gains,
-    pub functions: [HanFunction; 3],
+    pub functions: [Fal; 3],
 }
 
 impl NonlinearInjection {
     /// Exponents alpha \[1\] and linear zones delta \[y\]; Table 4 prints 1, 0.5, 0.25 and three times 0.01.
     pub fn new(gains: Gains, exponents: [f64; 3], linear_zones: [f64; 3]) -> Self {
-        let functions = core::array::from_fn(|index| HanFunction::new(exponents[index], linear_zones[index]));
+        let functions = core::array::from_fn(|index| Fal::new(exponents[index], linear_zones[index]));
         Self { gains, functions }
     }
 }
@@ -119,7 +119,7 @@ impl NonlinearInjection {
 impl Injection for NonlinearInjection {
     #[inline(always)]
     fn at(&self, error: f64) -> [f64; 3] {
-        let values = han_function::values(&self.functions, error);
+        let values = fal::values(&self.functions, error);
         core::array::from_fn(|index| self.gains[index] * values[index])
     }
 

@@ -5,7 +5,7 @@
 use core::array::from_fn;
 
 use super::factored_covariance::sum;
-use super::model::Model;
+use super::process_model::ProcessModel;
 use super::sample_window::SampleWindow;
 use serde::{Deserialize, Serialize};
 use serde_big_array::BigArray;
@@ -59,7 +59,7 @@ impl<const N: usize> GaussNewtonObserver<N> {
     #[inline]
     pub fn update(
         &mut self,
-        model: &impl Model<N>,
+        model: &impl ProcessModel<N>,
         settings: &GaussNewtonSettings,
         measured: f64,
         input: f64,
@@ -84,7 +84,7 @@ impl<const N: usize> GaussNewtonObserver<N> {
     }
 
     /// Improves both ends of the window.
-    fn iterate(&mut self, model: &impl Model<N>, max_iterations: u32, unknowns: usize) {
+    fn iterate(&mut self, model: &impl ProcessModel<N>, max_iterations: u32, unknowns: usize) {
         let [.., newest] = self.window.measurements() else { return };
         let resolution = RESOLUTION * newest.abs();
         for _ in 0..max_iterations {
@@ -105,7 +105,7 @@ impl<const N: usize> GaussNewtonObserver<N> {
 
     /// The least-squares problem around the present state.
     #[inline]
-    fn linearise(&self, model: &impl Model<N>) -> LeastSquares<N> {
+    fn linearise(&self, model: &impl ProcessModel<N>) -> LeastSquares<N> {
         let mut problem = LeastSquares::at(self.oldest);
         let (measurements, inputs) = (self.window.measurements(), self.window.inputs());
         for (index, measured) in measurements.iter().enumerate() {
@@ -199,7 +199,7 @@ mod tests {
 
     const STEP: f64 = 0.1;
 
-    impl Model<3> for Pendulum {
+    impl ProcessModel<3> for Pendulum {
         fn predict(&self, state: &[f64; 3], input: f64) -> [f64; 3] {
             self.linearised(state, input).0
         }

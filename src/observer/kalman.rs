@@ -106,7 +106,7 @@ impl KalmanObserver {
 
     /// Standard deviations of position, velocity and flux after the last sample, by the filter's own account.
     #[inline]
-    pub fn deviation(&self) -> State {
+    pub fn standard_deviation(&self) -> State {
         // The factors are finite, their products may overflow.
         let [position, velocity, flux] =
             self.filter.covariance.variances().map(|variance| variance.sqrt().min(f64::MAX));

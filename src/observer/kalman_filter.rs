@@ -6,7 +6,7 @@
 //! ```
 
 use super::factored_covariance::FactoredCovariance;
-use super::model::Model;
+use super::process_model::ProcessModel;
 use serde::{Deserialize, Serialize};
 use serde_big_array::BigArray;
 
@@ -34,7 +34,7 @@ impl<const N: usize> KalmanFilter<N> {
 
     /// x := F(x, u), P := F' P F'^T + Q
     #[inline]
-    pub fn predict(&mut self, model: &impl Model<N>, input: f64, noise: &FactoredCovariance<N>) {
+    pub fn predict(&mut self, model: &impl ProcessModel<N>, input: f64, noise: &FactoredCovariance<N>) {
         let (state, slope) = model.linearised(&self.state, input);
         self.state = state;
         self.covariance.propagate(&slope, noise);

@@ -31,7 +31,7 @@ pub struct NewtonSettings {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NewtonObserver {
     /// w0: state two samples before the next one.
-    retarded: State,
+    delayed_state: State,
     /// y\[k-2\], y\[k-1\] \[m\] when the sample k arrives.
     positions: [f64; 2],
     /// u\[k-2\] \[V\] when the sample k arrives.
@@ -45,7 +45,7 @@ pub struct NewtonObserver {
 impl NewtonObserver {
     /// An observer that starts from w0 = `initial`.
     pub fn new(initial: State) -> Self {
-        Self { retarded: initial, positions: [0.0; 2], voltage: 0.0, samples: 0, estimate: initial }
+        Self { delayed_state: initial, positions: [0.0; 2], voltage: 0.0, samples: 0, estimate: initial }
     }
 
     /// Takes the sample y\[k\] = `position` \[m\] and the voltage \[V\] that acted since the sample before.
@@ -65,9 +65,9 @@ impl NewtonObserver {
 
         let Solution { state: oldest, effects, iterations, converged } =
             if settings.step_size == 1.0 && !settings.line_search {
-                window.solve::<true>(settings, self.retarded)
+                window.solve::<true>(settings, self.delayed_state)
             } else {
-                window.solve_by_shorter_steps(settings, self.retarded)
+                window.solve_by_shorter_steps(settings, self.delayed_state)
             };
         // Steps 7 and 8 of the paper's algorithm: forward once for the next start, twice for the estimate.
         let next = oldest.after(effects[0], window.voltages[0], settings.sample_time);
@@ -81,7 +81,7 @@ impl NewtonObserver {
                 converged: false,
             };
         }
-        self.retarded = next;
+        self.delayed_state = next;
         self.estimate = state;
         let residual = largest_magnitude([
             window.positions[0] - oldest.position,

@@ -78,7 +78,7 @@ fn expecting(settings: &RigKalmanSettings, [position, velocity, disturbance]: [f
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::observer::model::Model;
+    use crate::observer::process_model::ProcessModel;
     use crate::plant::maglev_rig::MaglevRig;
     use nalgebra::{Matrix3, RowVector3, Vector3};
 

@@ -7,7 +7,7 @@
 //! over a sample, by one classical Runge-Kutta step. d stands for whatever the model does not know: a force, another mass.
 
 use super::factored_covariance::FactoredCovariance;
-use super::model::Model;
+use super::process_model::ProcessModel;
 use super::sampled_extended_state::DIVERGED;
 use crate::plant::maglev_rig::MaglevRig;
 use serde::{Deserialize, Serialize};
@@ -99,7 +99,7 @@ pub(super) fn is_plausible(state: &[f64; 3]) -> bool {
     state[0] > 0.0 && state.iter().all(|component| component.abs() <= DIVERGED)
 }
 
-impl Model<3> for DisturbedRig {
+impl ProcessModel<3> for DisturbedRig {
     #[inline]
     fn predict(&self, state: &[f64; 3], voltage: f64) -> [f64; 3] {
         self.step(state, self.acceleration(state, voltage), self.attraction(voltage))

@@ -22,7 +22,7 @@ pub struct WindowedNewtonSettings {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WindowedNewtonObserver {
     /// w0: state at the oldest sample.
-    retarded: State,
+    delayed_state: State,
     /// Outputs \[m\] and voltages \[V\].
     window: SampleWindow,
     /// Last estimate, kept when an inversion yields nothing finite.
@@ -32,7 +32,7 @@ pub struct WindowedNewtonObserver {
 impl WindowedNewtonObserver {
     /// An observer that starts from w0 = `initial`.
     pub fn new(initial: State) -> Self {
-        Self { retarded: initial, window: SampleWindow::EMPTY, estimate: initial }
+        Self { delayed_state: initial, window: SampleWindow::EMPTY, estimate: initial }
     }
 
     /// Takes the sample y\[k\] = `position` \[m\] and the voltage \[V\] that acted since the sample before.
@@ -57,7 +57,7 @@ impl WindowedNewtonObserver {
         }
 
         let window = Window::new(self.window.measurements(), self.window.inputs());
-        let solution = window.solve(&settings.newton, self.retarded);
+        let solution = window.solve(&settings.newton, self.delayed_state);
         let (state, residual) = window.forward(&settings.newton, solution.state);
         if !(solution.state.is_finite() && state.is_finite()) {
             return Estimate {
@@ -67,7 +67,7 @@ impl WindowedNewtonObserver {
                 converged: false,
             };
         }
-        self.retarded = solution.state;
+        self.delayed_state = solution.state;
         self.estimate = state;
         Estimate { state, residual, iterations: solution.iterations, converged: solution.converged }
     }
@@ -76,9 +76,9 @@ impl WindowedNewtonObserver {
     fn drop_oldest(&mut self, settings: &NewtonSettings) {
         let NewtonSettings { bearing, map, sample_time, .. } = *settings;
         if let Some(voltage) = self.window.inputs().first() {
-            let next = bearing.advance(map, self.retarded, *voltage, sample_time);
+            let next = bearing.advance(map, self.delayed_state, *voltage, sample_time);
             if next.is_finite() {
-                self.retarded = next;
+                self.delayed_state = next;
             }
         }
         self.window.drop_oldest();

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::file;
 use crate::model::system::SYSTEMS;
-use crate::model::{Description, StartValues, MODELS};
+use crate::model::{Description, MODELS, StartValues};
 
 /// Writes `directory/<form>/<Model>.fmu` for all models in all their forms ([`Form::directory`]), each with all
 /// `libraries`, and for all systems a package of each [`SystemForm`]: `directory/<system>.ssp`,

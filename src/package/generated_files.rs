@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::building::write;
 use super::model_page::{model_index, model_page};
 use super::{Form, PackageError, THIRD_PARTY_PATH, WrittenFile, model_description, third_party};
-use crate::model::{StartValues, MODELS};
+use crate::model::{MODELS, StartValues};
 
 /// Path below the repository's root and text of each file that is generated from the variable tables.
 pub fn generated_files() -> Vec<(PathBuf, String)> {

@@ -10,7 +10,7 @@ use object::{BinaryFormat, Object};
 use super::{FmiVersion, PackageError, Platform};
 use crate::file;
 use crate::fmi::function_names;
-use crate::model::{Edition, Token, MODELS, editions_of};
+use crate::model::{Edition, MODELS, Token, editions_of};
 
 /// Name of the library target, which differs from the package's in the dash.
 const LIBRARY_NAME: &str = "maglev_fmu";

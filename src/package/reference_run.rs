@@ -10,7 +10,7 @@
 use crate::model::system::{System, systems};
 use crate::model::variable::{Causality, Kind, Variable};
 use crate::model::{
-    ClosedLoop, Description, ExchangeOrder, Silence, StartValues, Model, ModelError, ModelType, models,
+    ClosedLoop, Description, ExchangeOrder, Model, ModelError, ModelType, NullLogSink, StartValues, models,
 };
 
 /// Longest run \[s\]. The inputs of a reference run do not react to the plant, and levitation is unstable: what an
@@ -205,7 +205,7 @@ impl Bench {
         }
         self.has_started = true;
         let seen = named_values(self.model());
-        self.stage.model_mut().advance(step_size, &mut Silence)?;
+        self.stage.model_mut().advance(step_size, &mut NullLogSink)?;
         if let Stage::Controller(closed_loop) = &mut self.stage {
             closed_loop.step_plant()?;
         }

@@ -5,8 +5,8 @@ use std::path::Path;
 use super::StudyError;
 use super::run::Run;
 use crate::fmi::FmiVersion;
-use crate::host::{ExchangeOrder, Fmu, HostError, Instance, Logging, ControlLoop, Value};
-use crate::model::{System, ModelType};
+use crate::host::{ControlLoop, ExchangeOrder, Fmu, HostError, Instance, Logging, Value};
+use crate::model::{ModelType, System};
 
 /// Variable and value.
 pub type Parameter<'a> = (&'a str, Value<'a>);
@@ -65,7 +65,7 @@ impl LoopPackages {
     }
 
     /// As [`LoopPackages::simulate`], with a `stimulus(time, controller, plant)` before every step: the place to move a
-    /// reference or to push the plant.
+    /// reference or to disturb the plant.
     pub fn simulate_with(
         &self,
         plant: &[Parameter<'_>],

@@ -65,7 +65,7 @@ pub static EXPERIMENTS: &[Experiment] = &[
     },
     Experiment {
         name: "rig-observers",
-        summary: "maglev rig: pushed loops, noise against peaking, the observers of all papers on one plant",
+        summary: "maglev rig: loops with a disturbance step, noise against peaking, the observers of all papers on one plant",
         run: rig_observers::run,
     },
 ];

@@ -1,12 +1,12 @@
-//! A step allocates nothing, whatever the observer, the law and the journal.
+//! A step allocates nothing, whatever the observer, the law and the sink.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::fmt::{self, Write};
 
-use maglev_fmu::signal::BallReference;
 use maglev_fmu::model::system::{BEARING, RIG};
-use maglev_fmu::model::{Journal, Silence, Topic};
+use maglev_fmu::model::{LogSink, NullLogSink, Topic};
+use maglev_fmu::signal::BallReference;
 use maglev_fmu_test::bearing::OBSERVERS;
 use maglev_fmu_test::closed_loop::closed_loop;
 use maglev_fmu_test::values::{get, set};
@@ -42,12 +42,12 @@ static ALLOCATOR: Counting = Counting;
 #[derive(Default)]
 struct Listener(usize);
 
-impl Journal for Listener {
-    fn wants(&self, _: Topic) -> bool {
+impl LogSink for Listener {
+    fn enabled(&self, _: Topic) -> bool {
         true
     }
 
-    fn note(&mut self, _: Topic, message: fmt::Arguments<'_>) {
+    fn log(&mut self, _: Topic, message: fmt::Arguments<'_>) {
         self.write_fmt(message).unwrap();
     }
 }
@@ -82,12 +82,12 @@ fn steps_allocate_nothing() {
                     set(&mut *run.controller, input, value);
                 }
                 if tick == 100 {
-                    run.controller.adopt_parameters();
+                    run.controller.apply_tunable_parameters();
                 }
                 run.controller.advance(1e-3, &mut listener).unwrap();
                 let voltage = get(&*run.controller, "voltage");
                 set(&mut *run.plant, "voltage", voltage);
-                run.plant.advance(1e-3, &mut Silence).unwrap();
+                run.plant.advance(1e-3, &mut NullLogSink).unwrap();
             }
             assert_eq!(ALLOCATIONS.get(), before, "{name}, law {law}");
         }
@@ -107,7 +107,7 @@ fn ball_steps_allocate_nothing(kind: f64, listener: &mut Listener) {
     let before = ALLOCATIONS.get();
     for tick in 0..600 {
         if tick == 500 {
-            run.controller.adopt_parameters();
+            run.controller.apply_tunable_parameters();
         }
         run.step();
     }
@@ -141,7 +141,7 @@ fn rig_steps_allocate_nothing(listener: &mut Listener) {
                 set(&mut *run.controller, to, value);
             }
             if tick == 100 {
-                run.controller.adopt_parameters();
+                run.controller.apply_tunable_parameters();
             }
             run.controller.advance(1e-3, listener).unwrap();
             let voltage = get(&*run.controller, "voltage");

@@ -8,8 +8,8 @@ use maglev_fmu::fmi::fmi2::types::{FMI2_MODEL_EXCHANGE, fmi2CallbackFunctions};
 use maglev_fmu::fmi::fmi2::*;
 use maglev_fmu::fmi::fmi3::types::fmi3Boolean;
 use maglev_fmu::fmi::fmi3::*;
-use maglev_fmu::package::Capabilities;
 use maglev_fmu::model::{Edition, editions, models};
+use maglev_fmu::package::Capabilities;
 
 use super::harness::clocked::{Choices, co_simulation_of};
 use super::harness::{Component, OK, Phase, Recorder, Standard, token};

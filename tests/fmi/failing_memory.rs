@@ -13,7 +13,7 @@ use maglev_fmu::fmi::fmi2::types::{
 use maglev_fmu::fmi::fmi2::*;
 use maglev_fmu::fmi::fmi3::*;
 use maglev_fmu::model::variable::Kind;
-use maglev_fmu::model::{Description, Edition, StartValues, MODELS, models};
+use maglev_fmu::model::{Description, Edition, MODELS, StartValues, models};
 
 use super::allocator::{blocks, with_memory_for};
 use super::harness::{BOTH, Component, ERROR, OK, Standard};

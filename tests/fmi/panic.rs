@@ -1,7 +1,7 @@
 //! A defect inside a model stays inside the instance.
 
 use maglev_fmu::fmi::{Callback, Instance, Interface, Logger};
-use maglev_fmu::model::{Description, Journal, MagneticBearingPlant, Model, ModelError};
+use maglev_fmu::model::{Description, LogSink, MagneticBearingPlant, Model, ModelError};
 use serde::{Deserialize, Serialize};
 
 use super::harness::{
@@ -25,7 +25,7 @@ impl Model for Defective {
     fn values_mut(&mut self) -> &mut [f64] {
         self.plant.values_mut()
     }
-    fn adopt_parameters(&mut self) {}
+    fn apply_tunable_parameters(&mut self) {}
     fn initialise(&mut self, start_time: f64) -> Result<(), ModelError> {
         self.plant.initialise(start_time)
     }
@@ -33,10 +33,10 @@ impl Model for Defective {
         Ok(())
     }
 
-    fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), ModelError> {
+    fn advance(&mut self, duration: f64, sink: &mut dyn LogSink) -> Result<(), ModelError> {
         self.steps += 1;
         assert!(self.steps < 3, "deliberate");
-        self.plant.advance(duration, journal)
+        self.plant.advance(duration, sink)
     }
 }
 

@@ -1,8 +1,8 @@
 //! The bearing loop natively and through packaged FMUs of both standards: the same bits.
 
-use maglev_fmu::host::{ExchangeOrder, ControlLoop};
-use maglev_fmu::package::FmiVersion::{self, Three, Two};
+use maglev_fmu::host::{ControlLoop, ExchangeOrder};
 use maglev_fmu::model::system::BEARING;
+use maglev_fmu::package::FmiVersion::{self, Three, Two};
 use maglev_fmu_test::closed_loop::closed_loop;
 use maglev_fmu_test::packages;
 use maglev_fmu_test::values::get;

@@ -1,6 +1,6 @@
 //! The master of two models, with a small model of each version.
 
-use maglev_fmu::host::{ExchangeOrder, Fmu, HostError, Instance, Logging, ControlLoop};
+use maglev_fmu::host::{ControlLoop, ExchangeOrder, Fmu, HostError, Instance, Logging};
 
 use super::small_model::*;
 

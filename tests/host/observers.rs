@@ -1,13 +1,13 @@
 //! The controller model runs the observers of the core, bit for bit, natively and as a packaged model of both standards.
 
 use maglev_fmu::host::Logging;
+use maglev_fmu::model::{MagneticBearingController, Model, NullLogSink};
 use maglev_fmu::observer::kalman::{KalmanObserver, KalmanSettings};
 use maglev_fmu::observer::newton::{NewtonObserver, NewtonSettings};
 use maglev_fmu::observer::reduced_newton::{ReducedNewtonObserver, ReducedNewtonSettings};
 use maglev_fmu::observer::windowed_newton::{WindowedNewtonObserver, WindowedNewtonSettings};
 use maglev_fmu::package::Form;
 use maglev_fmu::plant::magnetic_bearing::{MagneticBearing, Map};
-use maglev_fmu::model::{MagneticBearingController, Silence, Model};
 use maglev_fmu_test::bearing::{APPLIED, KALMAN, OBSERVERS};
 use maglev_fmu_test::packages;
 use maglev_fmu_test::sampled_bearing::{Experiment, OBSERVER_START, T, law_a, state_feedback};
@@ -131,7 +131,7 @@ fn native_model_runs_the_cores_observers() {
         for (tick, (sample, expected)) in samples.iter().zip(expected(name, &samples)).enumerate() {
             set(&mut model, "position", sample.0);
             set(&mut model, "voltage_applied", sample.1);
-            model.advance(T, &mut Silence).unwrap();
+            model.advance(T, &mut NullLogSink).unwrap();
             assert_eq!(RESULTS.map(|result| get(&model, result)), expected, "{name}, tick {tick}");
         }
     }
@@ -177,7 +177,7 @@ fn kalman_ignores_the_map_and_announces_its_prior() {
         let results = runs.each_mut().map(|model| {
             set(model, "position", position);
             set(model, "voltage_applied", voltage);
-            model.advance(T, &mut Silence).unwrap();
+            model.advance(T, &mut NullLogSink).unwrap();
             RESULTS.map(|result| get(model, result))
         });
         assert_eq!(results[0], results[1]);
@@ -190,11 +190,11 @@ fn tunable_parameters_reach_the_running_observer() {
     set(&mut model, "observer.kind", KALMAN);
     model.initialise(0.0).unwrap();
     let deviation = |model: &mut MagneticBearingController| {
-        (0..200).for_each(|_| model.advance(T, &mut Silence).unwrap());
+        (0..200).for_each(|_| model.advance(T, &mut NullLogSink).unwrap());
         get(model, "estimate.position_deviation")
     };
     let fine = deviation(&mut model);
     set(&mut model, "observer.position_noise", 1e-3);
-    model.adopt_parameters();
+    model.apply_tunable_parameters();
     assert!(deviation(&mut model) > 2.0 * fine, "the filter goes on with the new noise");
 }

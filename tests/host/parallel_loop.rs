@@ -1,7 +1,7 @@
 //! A master that steps both models at once hands the voltage over one step late. The observer converges all the same if
 //! it hears the voltage that acted.
 
-use maglev_fmu::host::{ExchangeOrder, Trace, ControlLoop};
+use maglev_fmu::host::{ControlLoop, ExchangeOrder, Trace};
 use maglev_fmu::package::FmiVersion::{self, Three, Two};
 use maglev_fmu_test::packages;
 

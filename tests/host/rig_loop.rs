@@ -1,9 +1,9 @@
 //! The rig's loop natively and through packaged FMUs of both standards: the same bits.
 
-use maglev_fmu::host::{ExchangeOrder, ControlLoop};
-use maglev_fmu::package::FmiVersion::{self, Three, Two};
-use maglev_fmu::model::Silence;
+use maglev_fmu::host::{ControlLoop, ExchangeOrder};
+use maglev_fmu::model::NullLogSink;
 use maglev_fmu::model::system::RIG;
+use maglev_fmu::package::FmiVersion::{self, Three, Two};
 use maglev_fmu_test::closed_loop::closed_loop;
 use maglev_fmu_test::packages;
 use maglev_fmu_test::rig::{
@@ -45,7 +45,7 @@ fn natively(plant: &[(&str, f64)], controller: &[(&str, f64)]) -> Columns {
             let value = if *model == "plant" { get(&*rig.plant, name) } else { get(&*rig.controller, name) };
             column.push(value.to_bits());
         }
-        rig.plant.advance(T, &mut Silence).unwrap();
+        rig.plant.advance(T, &mut NullLogSink).unwrap();
     }
     columns
 }

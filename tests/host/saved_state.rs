@@ -1,9 +1,9 @@
 //! Packaged models go on from serialised states that another instance, of any form, has written.
 
 use maglev_fmu::host::{HostError, Instance, Storage};
-use maglev_fmu::package::Form;
 use maglev_fmu::model::system::SYSTEMS;
 use maglev_fmu::model::variable::{Causality, Kind};
+use maglev_fmu::package::Form;
 use maglev_fmu_test::packages;
 
 /// All reals of the model, as bits.

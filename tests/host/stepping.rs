@@ -137,7 +137,10 @@ fn states_are_saved_and_restored_by_their_own_instance_only() {
     model.free_state(saved).unwrap();
 
     let mut model = two.instantiate("two", Logging::Off).unwrap();
-    assert!(matches!(model.save_state(), Err(HostError::MissingFunction { function: "fmi2GetFMUstate", .. })));
+    assert!(matches!(
+        model.save_state(),
+        Err(HostError::MissingFunction { function: "fmi2GetFMUstate", .. })
+    ));
 }
 
 #[test]

@@ -5,11 +5,11 @@ use std::fs;
 use std::io::{Cursor, Read};
 use std::path::{Path, PathBuf};
 
+use maglev_fmu::model::system::SYSTEMS;
+use maglev_fmu::model::{Description, MODELS, ModelType, StartValues, models};
 use maglev_fmu::package::{
     FmiVersion, Form, GenerationTime, Library, PackageError, SystemForm, build, icon_png, model_description,
 };
-use maglev_fmu::model::system::SYSTEMS;
-use maglev_fmu::model::{Description, StartValues, MODELS, ModelType, models};
 use object::Architecture;
 use zip::ZipArchive;
 

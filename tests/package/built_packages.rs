@@ -5,11 +5,11 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use maglev_fmu::model::system::{SYSTEMS, System};
+use maglev_fmu::model::{Description, MODELS, ModelType, StartValues};
 use maglev_fmu::package::{
     Entry, FmiVersion, Form, GenerationTime, Library, SystemForm, build_with, contents, system_contents,
 };
-use maglev_fmu::model::system::{SYSTEMS, System};
-use maglev_fmu::model::{Description, StartValues, MODELS, ModelType};
 use maglev_fmu_test::packages;
 use object::Architecture;
 use tempfile::TempDir;

@@ -3,8 +3,8 @@
 use std::fs;
 
 use maglev_fmu::fmi::{FmiVersion, function_names};
+use maglev_fmu::model::{MODELS, Token, editions_of};
 use maglev_fmu::package::{Library, PackageError};
-use maglev_fmu::model::{Token, MODELS, editions_of};
 use object::{Architecture, BinaryFormat};
 use proptest::prelude::*;
 

@@ -2,10 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use maglev_fmu::package::{Capabilities, FmiVersion, Form, GenerationTime, model_description};
 use maglev_fmu::model::structure::DependencyKind;
 use maglev_fmu::model::variable::{Causality, Kind};
-use maglev_fmu::model::{Description, Edition, StartValues, MODELS, models};
+use maglev_fmu::model::{Description, Edition, MODELS, StartValues, models};
+use maglev_fmu::package::{Capabilities, FmiVersion, Form, GenerationTime, model_description};
 
 use super::xml::Element;
 

@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use maglev_fmu::host::{Instance, Logging};
-use maglev_fmu::package::{Form, REFERENCE_INPUT, REFERENCE_OUTPUT, RELATED_FILES};
 use maglev_fmu::model::MODELS;
+use maglev_fmu::package::{Form, REFERENCE_INPUT, REFERENCE_OUTPUT, RELATED_FILES};
 use maglev_fmu_test::packages;
 
 use super::xml::Element;

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 use maglev_fmu::host::{Fmu, Instance, Logging};
+use maglev_fmu::model::MAGNETIC_BEARING_CONTROLLER as CONTROLLER;
 use maglev_fmu::package::{self, Form, GenerationTime, Library};
 use maglev_fmu::parameter_file::ParameterFile;
-use maglev_fmu::model::MAGNETIC_BEARING_CONTROLLER as CONTROLLER;
 use serde_json::json;
 
 const VALUES: [(&str, f64); 3] =

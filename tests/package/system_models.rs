@@ -3,10 +3,10 @@
 use std::collections::BTreeSet;
 use std::io::{Cursor, Read};
 
-use maglev_fmu::package::SystemForm;
 use maglev_fmu::model::system::{BEARING, systems};
 use maglev_fmu::model::variable::{Causality, Kind};
 use maglev_fmu::model::{Description, Edition, StartValues};
+use maglev_fmu::package::SystemForm;
 use zip::ZipArchive;
 
 use super::built_packages::{bytes, packages_with, path, ssp_version, system_file};

@@ -2,12 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use maglev_fmu::package::{FmiVersion, SystemForm};
-use maglev_fmu::model::system::{System, systems};
 use maglev_fmu::model::models;
+use maglev_fmu::model::system::{System, systems};
 use maglev_fmu::model::variable::{Causality, Kind};
+use maglev_fmu::package::{FmiVersion, SystemForm};
 
-use super::built_packages::{ssp_version, system_file, model_file};
+use super::built_packages::{model_file, ssp_version, system_file};
 use super::xml::Element;
 
 /// Variable to member of a terminal.

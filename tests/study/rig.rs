@@ -105,7 +105,7 @@ fn tuned_observers_beat_the_printed_ones() {
         {
             assert!(cell(table, tuned, column) < printed, "{tuned}, column {column}");
         }
-        // A model without a disturbance bears neither the push nor a wrong mass.
+        // A model without a disturbance bears neither the disturbance step nor a wrong mass.
         assert!(cell(table, "Newton with disturbance", column) < 0.5 * cell(table, "Newton", column));
     }
 }

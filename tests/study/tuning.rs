@@ -1,14 +1,14 @@
 //! Tuning of the rig's observers: the objective's reference values, the search, and what becomes of its result.
 
 use maglev_fmu::host::Value;
+use maglev_fmu::model::system::RIG;
+use maglev_fmu::model::variable::Kind;
+use maglev_fmu::model::{ClosedLoop, ExchangeOrder, Model};
 use maglev_fmu::study::rig::recording::{Reference, SAMPLE_TIME};
 use maglev_fmu::study::tuning::candidate::{Candidate, ObserverKind, TABLE_3, TABLE_4};
 use maglev_fmu::study::tuning::noise_aware::NOISES;
 use maglev_fmu::study::tuning::settings::SwarmSettings;
 use maglev_fmu::study::tuning::{Objective, Tuned, tune};
-use maglev_fmu::model::system::RIG;
-use maglev_fmu::model::variable::Kind;
-use maglev_fmu::model::{ClosedLoop, ExchangeOrder, Model};
 use maglev_fmu_test::values::{get, set};
 
 fn search(observer: ObserverKind, objective: &Objective, settings: SwarmSettings, seed: u64) -> Tuned {

@@ -6,20 +6,20 @@ use std::ptr::NonNull;
 use std::sync::Arc;
 
 use crate::fmi::fmi2::types::*;
-use crate::host::journal::Journal;
+use crate::host::message_log::MessageLog;
 
 /// The callback table of one instance, which must not move.
 pub(super) struct Callbacks(NonNull<fmi2CallbackFunctions>);
 
 impl Callbacks {
-    /// Callbacks that log to `journal`, which has to outlive the instance.
-    pub(super) fn new(journal: &Arc<Journal>) -> Self {
+    /// Callbacks that log to `message_log`, which has to outlive the instance.
+    pub(super) fn new(message_log: &Arc<MessageLog>) -> Self {
         let callbacks = Box::new(fmi2CallbackFunctions {
             logger: Some(variadic_logger()),
             allocate_memory: Some(calloc),
             free_memory: Some(free),
             step_finished: None,
-            component_environment: Arc::as_ptr(journal).cast_mut().cast(),
+            component_environment: Arc::as_ptr(message_log).cast_mut().cast(),
         });
         // A raw pointer from here on: the FMU keeps it and reads through it until it is freed.
         Self(NonNull::from(Box::leak(callbacks)))
@@ -51,9 +51,9 @@ unsafe extern "C-unwind" fn log(
     category: fmi2String,
     message: fmi2String,
 ) {
-    // SAFETY: the environment is the journal of a living instance, the strings are C strings or NULL.
+    // SAFETY: the environment is the message_log of a living instance, the strings are C strings or NULL.
     unsafe {
-        Journal::append(environment.cast_const().cast(), status, category, message, |text| {
+        MessageLog::append(environment.cast_const().cast(), status, category, message, |text| {
             text.replace("%%", "%")
         });
     }

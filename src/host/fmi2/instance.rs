@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::fmi::fmi2::types::*;
 use crate::host::component::{Answer, Component, Number, Refusal, accept, boolean_from};
-use crate::host::journal::{Journal, text_of};
+use crate::host::message_log::{MessageLog, text_of};
 use crate::host::variable::Storage;
 
 use super::callbacks::Callbacks;
@@ -18,11 +18,11 @@ pub(in crate::host) struct FmiTwo {
     functions: Functions,
     // Both are only there to outlive the component that points to them.
     _callbacks: Callbacks,
-    _journal: Arc<Journal>,
+    _message_log: Arc<MessageLog>,
 }
 
 // SAFETY: the standard binds an instance to no thread, it only forbids concurrent calls; `FmiTwo` is not `Sync`.
-// The journal, the one thing shared with the FMU's own threads, is behind a lock.
+// The message_log, the one thing shared with the FMU's own threads, is behind a lock.
 unsafe impl Send for FmiTwo {}
 
 impl FmiTwo {
@@ -33,9 +33,9 @@ impl FmiTwo {
         token: &CStr,
         resource_location: &CStr,
         logging: bool,
-        journal: Arc<Journal>,
+        message_log: Arc<MessageLog>,
     ) -> Option<Self> {
-        let callbacks = Callbacks::new(&journal);
+        let callbacks = Callbacks::new(&message_log);
         // SAFETY: all strings end with NUL and outlive the call; the callbacks outlive the instance.
         let component = unsafe {
             (functions.instantiate)(
@@ -52,7 +52,7 @@ impl FmiTwo {
             component,
             functions,
             _callbacks: callbacks,
-            _journal: journal,
+            _message_log: message_log,
         })
     }
 

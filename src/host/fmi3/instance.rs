@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::fmi::fmi3::types::*;
 use crate::host::component::{Answer, Component, Number, Refusal, accept, boolean_from};
-use crate::host::journal::{Journal, text_of};
+use crate::host::message_log::{MessageLog, text_of};
 use crate::host::variable::Storage;
 
 use super::functions::{Access, Functions, OfInstance};
@@ -16,11 +16,11 @@ pub(in crate::host) struct FmiThree {
     instance: fmi3Instance,
     functions: Functions,
     // Only there to outlive the instance that points to it.
-    _journal: Arc<Journal>,
+    _message_log: Arc<MessageLog>,
 }
 
 // SAFETY: the standard binds an instance to no thread, it only forbids concurrent calls; `FmiThree` is not `Sync`.
-// The journal, the one thing shared with the FMU's own threads, is behind a lock.
+// The message_log, the one thing shared with the FMU's own threads, is behind a lock.
 unsafe impl Send for FmiThree {}
 
 impl FmiThree {
@@ -31,9 +31,9 @@ impl FmiThree {
         token: &CStr,
         resource_path: &CStr,
         logging: bool,
-        journal: Arc<Journal>,
+        message_log: Arc<MessageLog>,
     ) -> Option<Self> {
-        // SAFETY: all strings end with NUL and outlive the call; the journal outlives the instance.
+        // SAFETY: all strings end with NUL and outlive the call; the message_log outlives the instance.
         let instance = unsafe {
             (functions.instantiate)(
                 name.as_ptr(),
@@ -45,12 +45,12 @@ impl FmiThree {
                 FMI3_FALSE,
                 ptr::null(),
                 0,
-                Arc::as_ptr(&journal).cast_mut().cast(),
+                Arc::as_ptr(&message_log).cast_mut().cast(),
                 Some(log),
                 None,
             )
         };
-        (!instance.is_null()).then_some(Self { instance, functions, _journal: journal })
+        (!instance.is_null()).then_some(Self { instance, functions, _message_log: message_log })
     }
 
     fn call(&self, name: &'static str, function: OfInstance) -> Answer {
@@ -283,6 +283,6 @@ unsafe extern "C-unwind" fn log(
     category: fmi3String,
     message: fmi3String,
 ) {
-    // SAFETY: the environment is the journal of a living instance, the strings are C strings or NULL.
-    unsafe { Journal::append(environment.cast_const().cast(), status, category, message, |text| text) };
+    // SAFETY: the environment is the message_log of a living instance, the strings are C strings or NULL.
+    unsafe { MessageLog::append(environment.cast_const().cast(), status, category, message, |text| text) };
 }

@@ -2,11 +2,11 @@
 
 use super::shell::follow;
 use super::{ContinuousPlant, PlantEquations};
-use crate::scalar::{Dual, Scalar};
-use crate::signal::quantise;
 use crate::model::continuous::{Stage, Tangents};
 use crate::model::sensor::{Sensor, noisy};
 use crate::model::{ContinuousModel, Solver, TIME};
+use crate::scalar::{Dual, Scalar};
+use crate::signal::quantise;
 
 impl<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U: usize> ContinuousModel
     for ContinuousPlant<E, N, X, U>

@@ -2,10 +2,10 @@
 
 use core::fmt::Debug;
 
-use crate::scalar::Scalar;
 use crate::model::Description;
 use crate::model::variable::{Variable, required_row};
 use crate::model::work::Load;
+use crate::scalar::Scalar;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -44,7 +44,7 @@ pub struct ProcessNoise {
     /// Which of the states, by its place in [`PlantEquations::STATES`].
     pub state: usize,
     /// Row of its standard deviation.
-    pub deviation: usize,
+    pub standard_deviation: usize,
 }
 
 /// A plant of `N` variables, `X` continuous states and `U` inputs.

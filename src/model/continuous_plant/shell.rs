@@ -4,11 +4,11 @@ use core::array::from_fn;
 
 use super::differentiation::initialise;
 use super::{Motion, PlantEquations};
-use crate::scalar::Scalar;
-use crate::signal::{GaussianNoise, quantise};
 use crate::model::sensor::{Sensor, check_sample_time};
 use crate::model::work::require_affordable;
-use crate::model::{ContinuousModel, Description, Journal, Solver, TIME, Topic, Model, ModelError};
+use crate::model::{ContinuousModel, Description, LogSink, Model, ModelError, Solver, TIME, Topic};
+use crate::scalar::Scalar;
+use crate::signal::{GaussianNoise, quantise};
 use serde::{Deserialize, Serialize};
 use serde_big_array::BigArray;
 
@@ -160,7 +160,7 @@ impl<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U: usize>
     }
 
     /// Tunable parameters are read from the values at each step.
-    fn adopt_parameters(&mut self) {}
+    fn apply_tunable_parameters(&mut self) {}
 
     fn initialise(&mut self, start_time: f64) -> Result<(), ModelError> {
         let rows = E::SENSOR;
@@ -189,7 +189,7 @@ impl<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U: usize>
         require_affordable(duration, [self.equations.load(), self.sensor.load()])
     }
 
-    fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), ModelError> {
+    fn advance(&mut self, duration: f64, sink: &mut dyn LogSink) -> Result<(), ModelError> {
         self.check_step(duration)?;
         let (begin, slopes) = (self.inputs(), self.slopes);
         let end = self.inputs_after(begin, duration)?;
@@ -201,13 +201,13 @@ impl<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U: usize>
             },
             |motion| E::measured(&self.values, &motion.state),
         )?;
-        if motion.mode != self.mode && journal.wants(Topic::Events) {
-            announce::<E, N, X, U>(self.values[TIME] + duration, motion.mode, journal);
+        if motion.mode != self.mode && sink.enabled(Topic::Events) {
+            announce::<E, N, X, U>(self.values[TIME] + duration, motion.mode, sink);
         }
         if let Some(noise) = E::PROCESS_NOISE
-            && self.values[noise.deviation] > 0.0
+            && self.values[noise.standard_deviation] > 0.0
         {
-            motion.state[noise.state] += self.values[noise.deviation] * self.process_noise.sample();
+            motion.state[noise.state] += self.values[noise.standard_deviation] * self.process_noise.sample();
         }
         self.set_motion(E::at_communication_point(&self.values, motion));
         for (row, value) in E::INPUTS.into_iter().zip(end) {
@@ -261,16 +261,16 @@ where
 fn announce<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U: usize>(
     time: f64,
     mode: E::Mode,
-    journal: &mut dyn Journal,
+    sink: &mut dyn LogSink,
 ) {
     if let Some(announcement) = E::announcement(mode) {
-        journal.note(Topic::Events, format_args!("by t = {time} s {announcement}"));
+        sink.log(Topic::Events, format_args!("by t = {time} s {announcement}"));
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::model::{ContinuousModel, LevitatedBallPlant, Persistent, Model};
+    use crate::model::{ContinuousModel, LevitatedBallPlant, Model, Persistent};
 
     /// Guards: slopes that initialisation keeps and that no step can use.
     #[test]

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use super::differentiation::initialise;
 use super::shell::follow;
 use super::{ContinuousPlant, PlantEquations};
-use crate::scalar::{Traced, Variation};
 use crate::model::Solver;
 use crate::model::structure::{Dependencies, DependencyKind, Structured};
 use crate::model::variable::{Causality, Kind, Variability, Variable};
+use crate::scalar::{Traced, Variation};
 
 /// Who solves the plant, and whether its sensor is read: all that an instance may be.
 const CONFIGURATIONS: [(Solver, bool); 3] =

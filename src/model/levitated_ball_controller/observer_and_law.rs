@@ -4,12 +4,12 @@ use super::parameters::{check_prefilters, initial_estimate, law, observer_settin
 use super::table::*;
 use crate::controller::ball_feedback_linearisation::BallFeedbackLinearisation;
 use crate::controller::saturate;
+use crate::model::controller_choices::Feedback;
+use crate::model::sampled_controller::{ObserverAndLaw, Sample};
+use crate::model::{Description, LogSink, ModelError, Topic};
 use crate::observer::ball_observer::{BallEstimate, BallObserver};
 use crate::plant::levitated_ball::State;
 use crate::signal::{BallReferenceFilter, SmoothReference};
-use crate::model::controller_choices::Feedback;
-use crate::model::sampled_controller::{ObserverAndLaw, Sample};
-use crate::model::{Description, Journal, Topic, ModelError};
 use serde::{Deserialize, Serialize};
 
 /// What a tick costs at most \[s\], see [`crate::model::work`].
@@ -67,7 +67,7 @@ impl ObserverAndLaw<COUNT> for BallObserverAndLaw {
     }
 
     #[inline]
-    fn tick(&mut self, values: &mut [f64; COUNT], sample: Sample, journal: &mut dyn Journal) {
+    fn tick(&mut self, values: &mut [f64; COUNT], sample: Sample, sink: &mut dyn LogSink) {
         let (current, rate) = (values[CURRENT_INPUT], values[REFERENCE_FILTER]);
         let estimate = if sample.is_first {
             self.reference.present(values[REFERENCE]);
@@ -76,8 +76,8 @@ impl ObserverAndLaw<COUNT> for BallObserverAndLaw {
             self.reference.update(values[REFERENCE], rate, values[SAMPLE_TIME]);
             self.observer.update(current, sample.acting_voltage)
         };
-        if estimate.restarted && journal.wants(Topic::Observer) {
-            note_restart(current, sample, journal);
+        if estimate.restarted && sink.enabled(Topic::Observer) {
+            log_restart(current, sample, sink);
         }
         let reference = self.reference.output(rate);
         let fed_back = if Feedback::State.is(values[CONTROLLER_FEEDBACK]) {
@@ -105,9 +105,9 @@ impl ObserverAndLaw<COUNT> for BallObserverAndLaw {
 }
 
 #[cold]
-fn note_restart(current: f64, sample: Sample, journal: &mut dyn Journal) {
+fn log_restart(current: f64, sample: Sample, sink: &mut dyn LogSink) {
     let Sample { time, acting_voltage, .. } = sample;
-    journal.note(
+    sink.log(
         Topic::Observer,
         format_args!(
             "t = {time} s: the observer ran away and starts again, at a current of {current:e} A and a voltage of \

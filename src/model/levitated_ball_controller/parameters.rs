@@ -2,10 +2,10 @@
 
 use super::table::*;
 use crate::controller::ball_feedback_linearisation::BallFeedbackLinearisation;
-use crate::observer::ball_observer::{Adaptation, BallObserverSettings, FluxEstimator, InitialBallEstimate};
-use crate::observer::flux_mixing::MixingSettings;
-use crate::plant::levitated_ball::LevitatedBall;
 use crate::model::ModelError;
+use crate::observer::ball_observer::{Adaptation, BallObserverSettings, FluxEstimator, InitialBallEstimate};
+use crate::observer::drem::MixingSettings;
+use crate::plant::levitated_ball::LevitatedBall;
 
 pub(super) fn observer_settings(values: &[f64; COUNT]) -> BallObserverSettings {
     let sample_time = values[SAMPLE_TIME];

@@ -6,11 +6,11 @@ use super::parameters::{
 use super::table::*;
 use crate::controller::digital_pid::DigitalPid;
 use crate::controller::saturate_between;
+use crate::model::sampled_controller::{ObserverAndLaw, Sample};
+use crate::model::{Description, LogSink, ModelError, Topic};
 use crate::observer::extended_state::ExtendedState;
 use crate::observer::rig_observer::{RigObserver, RigStart};
 use crate::signal::reference_filter::{Reference, ReferenceFilter};
-use crate::model::sampled_controller::{ObserverAndLaw, Sample};
-use crate::model::{Description, Journal, Topic, ModelError};
 use serde::{Deserialize, Serialize};
 
 /// What observer, reference filter and law remember from tick to tick.
@@ -26,15 +26,15 @@ pub struct RigObserverAndLaw {
 impl RigObserverAndLaw {
     /// What the first tick adds: observer and reference start from the inputs.
     #[cold]
-    fn begin(&mut self, values: &[f64; COUNT], journal: &mut dyn Journal) {
+    fn begin(&mut self, values: &[f64; COUNT], sink: &mut dyn LogSink) {
         let settings = observer_settings(values);
         let measured = settings.measurement.of(values[SENSOR_VOLTAGE]);
         self.observer = RigObserver::new(settings, start(values, measured));
         self.reference = Reference::at_rest(values[REFERENCE]);
         if let Law::DisturbanceRejection(law) = self.law {
             let assumed = settings.measurement.input_gain_in_volts(values[OBSERVER_INPUT_GAIN]);
-            if (assumed / law.input_gain - 1.0).abs() > 0.01 && journal.wants(Topic::Observer) {
-                journal.note(
+            if (assumed / law.input_gain - 1.0).abs() > 0.01 && sink.enabled(Topic::Observer) {
+                sink.log(
                     Topic::Observer,
                     format_args!(
                         "observer.input_gain stands for {assumed} 1/s2 in sensor volts, controller.input_gain for \
@@ -99,9 +99,9 @@ impl ObserverAndLaw<COUNT> for RigObserverAndLaw {
     }
 
     #[inline]
-    fn tick(&mut self, values: &mut [f64; COUNT], sample: Sample, journal: &mut dyn Journal) {
+    fn tick(&mut self, values: &mut [f64; COUNT], sample: Sample, sink: &mut dyn LogSink) {
         if sample.is_first {
-            self.begin(values, journal);
+            self.begin(values, sink);
         }
         let (sensor_voltage, command) = (values[SENSOR_VOLTAGE], values[REFERENCE]);
         let estimate = self.observer.update(sensor_voltage, sample.acting_voltage);
@@ -118,7 +118,7 @@ impl ObserverAndLaw<COUNT> for RigObserverAndLaw {
         values[FILTERED_REFERENCE] = self.reference.position;
         if estimate.restarted {
             values[OBSERVER_RESTARTS] = (values[OBSERVER_RESTARTS] + 1.0).min(f64::from(i32::MAX));
-            note_restart(sample.time, journal);
+            log_restart(sample.time, sink);
         }
         self.publish(estimate.state, values);
     }
@@ -135,9 +135,9 @@ impl ObserverAndLaw<COUNT> for RigObserverAndLaw {
 }
 
 #[cold]
-fn note_restart(time: f64, journal: &mut dyn Journal) {
-    if journal.wants(Topic::Observer) {
-        journal.note(
+fn log_restart(time: f64, sink: &mut dyn LogSink) {
+    if sink.enabled(Topic::Observer) {
+        sink.log(
             Topic::Observer,
             format_args!("t = {time} s: the observer diverged and starts anew from the measurement"),
         );

@@ -3,6 +3,7 @@
 use super::table::*;
 use crate::controller::digital_pid::{Derivative, PidSettings};
 use crate::controller::disturbance_rejection::DisturbanceRejection;
+use crate::model::ModelError;
 use crate::observer::extended_state::{
     ExtendedState, LinearInjection, NonlinearInjection, gains_from_bandwidth,
 };
@@ -13,7 +14,6 @@ use crate::observer::rig_model::DisturbedRig;
 use crate::observer::rig_observer::{RigEstimatorSettings, RigObserverSettings, RigStart};
 use crate::observer::sampled_extended_state::{Discretisation, ExtendedStateSettings, Form, InjectionChoice};
 use crate::plant::maglev_rig::{MaglevRig, PositionSensor};
-use crate::model::ModelError;
 use serde::{Deserialize, Serialize};
 
 /// Costs at most \[s\], see [`crate::model::work`]: of a tick, of a closed form for gains as large as they come, of a

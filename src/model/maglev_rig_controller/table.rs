@@ -1,6 +1,5 @@
 //! Variables and description of the controller of the maglev rig.
 
-use crate::observer::gauss_newton::MAX_WINDOW;
 use crate::model::Description;
 use crate::model::choice::choice;
 use crate::model::controller_choices::VoltageSource;
@@ -15,6 +14,7 @@ use crate::model::maglev_rig::{
 use crate::model::quantity::{DURATION, Enumeration, RATE, RATIO, TIME as TIME_QUANTITY};
 use crate::model::start_delay::start_delay;
 use crate::model::variable::{Kind, Variability, Variable, variable_table};
+use crate::observer::gauss_newton::MAX_WINDOW;
 
 choice! {
     pub(super) enum ObserverKind = "RigObserver", "State estimator" {

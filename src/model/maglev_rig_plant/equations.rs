@@ -1,16 +1,16 @@
 //! The rig's ball between its stops: which rows its state, inputs and outputs are, and what follows from what.
 
 use super::table::*;
-use crate::plant::end_stops::{Contact, rate_in_contact, settled, transition};
-use crate::plant::maglev_rig::{HeldBall, LONGEST_SUBSTEP, MaglevRig, PositionSensor, State};
-use crate::plant::maglev_rig_ramp::RampedBall;
-use crate::scalar::Scalar;
 use crate::model::Description;
 use crate::model::continuous_plant::{Motion, PlantEquations};
 use crate::model::end_stop_events::indicators;
 #[cfg(feature = "tools")]
 use crate::model::end_stop_events::{cause_of_contact, imposed};
 use crate::model::work::Load;
+use crate::plant::end_stops::{Contact, rate_in_contact, settled, transition};
+use crate::plant::maglev_rig::{HeldBall, LONGEST_SUBSTEP, MaglevRig, PositionSensor, State};
+use crate::plant::maglev_rig_ramp::RampedBall;
+use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
 /// What a step of the integrator costs \[s\], see [`crate::model::work`].

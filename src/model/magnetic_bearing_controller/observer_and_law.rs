@@ -3,11 +3,11 @@
 use super::parameters::{cost_of_tick, initial_estimate, law, observer_settings};
 use super::table::*;
 use crate::controller::{BearingLaw, saturate};
-use crate::observer::{BearingObserver, Estimate};
-use crate::plant::magnetic_bearing::State;
 use crate::model::controller_choices::Feedback;
 use crate::model::sampled_controller::{ObserverAndLaw, Sample};
-use crate::model::{Description, Journal, Topic};
+use crate::model::{Description, LogSink, Topic};
+use crate::observer::{BearingObserver, Estimate};
+use crate::plant::magnetic_bearing::State;
 use serde::{Deserialize, Serialize};
 
 /// What observer and law remember from tick to tick.
@@ -24,10 +24,10 @@ impl BearingObserverAndLaw {
         values[ESTIMATE_POSITION] = estimate.position;
         values[ESTIMATE_VELOCITY] = estimate.velocity;
         values[ESTIMATE_FLUX] = estimate.flux;
-        if let Some(deviation) = self.observer.deviation() {
-            values[POSITION_DEVIATION] = deviation.position;
-            values[VELOCITY_DEVIATION] = deviation.velocity;
-            values[FLUX_DEVIATION] = deviation.flux;
+        if let Some(standard_deviation) = self.observer.standard_deviation() {
+            values[POSITION_DEVIATION] = standard_deviation.position;
+            values[VELOCITY_DEVIATION] = standard_deviation.velocity;
+            values[FLUX_DEVIATION] = standard_deviation.flux;
         }
     }
 }
@@ -63,7 +63,7 @@ impl ObserverAndLaw<COUNT> for BearingObserverAndLaw {
 
     /// The first tick puts out u(0).
     #[inline]
-    fn tick(&mut self, values: &mut [f64; COUNT], sample: Sample, journal: &mut dyn Journal) {
+    fn tick(&mut self, values: &mut [f64; COUNT], sample: Sample, sink: &mut dyn LogSink) {
         let estimate = self.observer.update(values[POSITION], sample.acting_voltage);
         let fed_back = if Feedback::State.is(values[CONTROLLER_FEEDBACK]) {
             State { position: values[POSITION], velocity: values[STATE_VELOCITY], flux: values[STATE_FLUX] }
@@ -76,8 +76,8 @@ impl ObserverAndLaw<COUNT> for BearingObserverAndLaw {
         values[OBSERVER_RESIDUAL] = estimate.residual;
         values[OBSERVER_ITERATIONS] = f64::from(estimate.iterations);
         let converged = f64::from(u8::from(estimate.converged));
-        if converged != values[OBSERVER_CONVERGED] && journal.wants(Topic::Observer) {
-            note_convergence(sample.time, &estimate, journal);
+        if converged != values[OBSERVER_CONVERGED] && sink.enabled(Topic::Observer) {
+            log_convergence(sample.time, &estimate, sink);
         }
         values[OBSERVER_CONVERGED] = converged;
         self.publish(estimate.state, values);
@@ -93,9 +93,9 @@ impl ObserverAndLaw<COUNT> for BearingObserverAndLaw {
 }
 
 #[cold]
-fn note_convergence(time: f64, estimate: &Estimate, journal: &mut dyn Journal) {
+fn log_convergence(time: f64, estimate: &Estimate, sink: &mut dyn LogSink) {
     let verb = if estimate.converged { "converged" } else { "did not converge" };
-    journal.note(
+    sink.log(
         Topic::Observer,
         format_args!(
             "t = {time} s: the observer {verb} after {} iterations, residual {:e} m",

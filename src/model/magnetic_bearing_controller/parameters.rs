@@ -4,13 +4,13 @@ use super::table::*;
 use crate::controller::BearingLaw;
 use crate::controller::bearing_feedback::{Gains, Law};
 use crate::controller::flux_cascade::FluxCascade;
+use crate::model::magnetic_bearing::map;
 use crate::observer::BearingObserverSettings;
 use crate::observer::kalman::KalmanSettings;
 use crate::observer::newton::NewtonSettings;
 use crate::observer::reduced_newton::ReducedNewtonSettings;
 use crate::observer::windowed_newton::WindowedNewtonSettings;
 use crate::plant::magnetic_bearing::{MagneticBearing, Map, State};
-use crate::model::magnetic_bearing::map;
 
 /// Costs at most \[s\], see [`crate::model::work`]: of a tick without iterations, of an iteration, of what each sample of a
 /// longer window adds to it, and of a sample of the Kalman filter, which may go over the beginning again and again.

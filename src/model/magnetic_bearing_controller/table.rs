@@ -1,6 +1,5 @@
 //! Variables and description of the controller of the magnetic bearing.
 
-use crate::observer::windowed_newton::MAX_WINDOW;
 use crate::model::Description;
 use crate::model::choice::choice;
 use crate::model::controller_choices::{Feedback, VoltageSource};
@@ -12,6 +11,7 @@ use crate::model::quantity::{
 };
 use crate::model::start_delay::start_delay;
 use crate::model::variable::{Kind, Variability, Variable, variable_table};
+use crate::observer::windowed_newton::MAX_WINDOW;
 
 choice! {
     pub(super) enum ObserverKind = "BearingObserver", "State estimator" {

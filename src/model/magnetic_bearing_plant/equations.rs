@@ -1,12 +1,12 @@
 //! The bearing: which rows its state, inputs and outputs are, and what follows from what.
 
 use super::table::*;
-use crate::plant::magnetic_bearing::{MagneticBearing, State};
-use crate::scalar::Scalar;
 use crate::model::Description;
 use crate::model::continuous_plant::{Motion, PlantEquations, ProcessNoise};
 use crate::model::magnetic_bearing::map;
 use crate::model::quantity::MAGNETIC_FLUX;
+use crate::plant::magnetic_bearing::{MagneticBearing, State};
+use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
 /// Hysteresis of the flux's sign, in units of the nominal flux: an event indicator must not be zero after an event.
@@ -47,7 +47,7 @@ impl PlantEquations<COUNT, 3, 1> for MagneticBearingEquations {
     const INPUTS: [usize; 1] = [VOLTAGE_INPUT];
     const READING: usize = POSITION_MEASURED;
     const PROCESS_NOISE: Option<ProcessNoise> =
-        Some(ProcessNoise { state: 2, deviation: PROCESS_FLUX_NOISE });
+        Some(ProcessNoise { state: 2, standard_deviation: PROCESS_FLUX_NOISE });
 
     fn new(_: &[f64; COUNT]) -> Self {
         Self

@@ -2,7 +2,7 @@
 
 use crate::model::sampled::SAMPLE_TIME;
 use crate::model::variable::{Variable, required_row};
-use crate::model::{Description, Journal, ModelError};
+use crate::model::{Description, LogSink, ModelError};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -68,7 +68,7 @@ pub trait ObserverAndLaw<const N: usize>: Clone + Send + Serialize + Deserialize
     fn initialise(&mut self, values: &mut [f64; N]);
 
     /// Reads the inputs, runs the observer, then the law, and sets the outputs.
-    fn tick(&mut self, values: &mut [f64; N], sample: Sample, journal: &mut dyn Journal);
+    fn tick(&mut self, values: &mut [f64; N], sample: Sample, sink: &mut dyn LogSink);
 
     /// Whether this can have been made with these parameters.
     fn is_consistent(&self, values: &[f64; N]) -> bool;

@@ -6,7 +6,7 @@ use super::{ControllerRows, ObserverAndLaw, Sample};
 use crate::model::controller_choices::VoltageSource;
 use crate::model::sample_clock::SampleClock;
 use crate::model::start_delay::StartDelay;
-use crate::model::{Description, Journal, SampledModel, TIME, Model, ModelError};
+use crate::model::{Description, LogSink, Model, ModelError, SampledModel, TIME};
 use serde::{Deserialize, Serialize};
 use serde_big_array::BigArray;
 
@@ -19,7 +19,7 @@ pub struct SampledController<C: ObserverAndLaw<N>, const N: usize> {
     clock: SampleClock,
     start_delay: StartDelay,
     /// Whether the first tick is still to come.
-    awaits_first_sample: bool,
+    is_first_sample: bool,
     controller: C,
 }
 
@@ -33,14 +33,14 @@ impl<C: ObserverAndLaw<N>, const N: usize> SampledController<C, N> {
         Self {
             clock: SampleClock::new(sample_time, 0.0),
             start_delay: StartDelay::new(0.0, values[Self::ROWS.start_delay], sample_time),
-            awaits_first_sample: true,
+            is_first_sample: true,
             controller: C::new(&values),
             values,
         }
     }
 
     #[inline]
-    fn tick_at(&mut self, time: f64, journal: &mut dyn Journal) {
+    fn tick_at(&mut self, time: f64, sink: &mut dyn LogSink) {
         if self.start_delay.covers(time) {
             return;
         }
@@ -48,9 +48,9 @@ impl<C: ObserverAndLaw<N>, const N: usize> SampledController<C, N> {
         values[rows.tick_time] = time;
         let is_applied = VoltageSource::Applied.is(values[rows.voltage_source]);
         let acting_voltage = values[if is_applied { rows.voltage_applied } else { rows.voltage }];
-        let sample = Sample { time, is_first: self.awaits_first_sample, acting_voltage };
-        self.awaits_first_sample = false;
-        self.controller.tick(values, sample, journal);
+        let sample = Sample { time, is_first: self.is_first_sample, acting_voltage };
+        self.is_first_sample = false;
+        self.controller.tick(values, sample, sink);
     }
 }
 
@@ -73,7 +73,7 @@ impl<C: ObserverAndLaw<N>, const N: usize> Model for SampledController<C, N> {
         &mut self.values
     }
 
-    fn adopt_parameters(&mut self) {
+    fn apply_tunable_parameters(&mut self) {
         self.controller.apply_tunable_parameters(&self.values);
     }
 
@@ -86,7 +86,7 @@ impl<C: ObserverAndLaw<N>, const N: usize> Model for SampledController<C, N> {
         let sample_time = values[rows.sample_time];
         self.clock = SampleClock::starting(sample_time, start_time)?;
         self.start_delay = StartDelay::new(start_time, values[rows.start_delay], sample_time);
-        self.awaits_first_sample = true;
+        self.is_first_sample = true;
         values[TIME] = start_time;
         values[rows.tick_time] = start_time;
         self.controller.initialise(values);
@@ -98,10 +98,10 @@ impl<C: ObserverAndLaw<N>, const N: usize> Model for SampledController<C, N> {
         self.require_acceptable_step(duration)
     }
 
-    fn advance(&mut self, duration: f64, journal: &mut dyn Journal) -> Result<(), ModelError> {
+    fn advance(&mut self, duration: f64, sink: &mut dyn LogSink) -> Result<(), ModelError> {
         self.check_step(duration)?;
         for k in self.clock.advance(duration) {
-            self.tick_at(self.clock.time_of(k), journal);
+            self.tick_at(self.clock.time_of(k), sink);
         }
         Ok(())
     }
@@ -126,8 +126,8 @@ impl<C: ObserverAndLaw<N>, const N: usize> SampledModel for SampledController<C,
         &mut self.clock
     }
 
-    fn tick(&mut self, time: f64, journal: &mut dyn Journal) {
-        self.tick_at(time, journal);
+    fn tick(&mut self, time: f64, sink: &mut dyn LogSink) {
+        self.tick_at(time, sink);
     }
 
     fn longest_step(&self) -> f64 {

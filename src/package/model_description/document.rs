@@ -1,9 +1,9 @@
 //! The document and its root element `fmiModelDescription` (texts of FMI 2.0.5, section 2.2.1, and 3.0.2, section 2.4.1).
 
 use super::{fmi2, fmi3};
+use crate::model::{Description, StartValues};
 use crate::package::xml::{attribute, document, optional, origin};
 use crate::package::{FmiVersion, Form, GenerationTime};
-use crate::model::{Description, StartValues};
 
 /// `modelDescription.xml` of a model in one form. `time` is left out of the file that is checked in.
 pub fn model_description(

@@ -7,11 +7,11 @@ use super::shared_elements::{
     declared_type, default_experiment, dependency_attributes, enumerations, items, log_categories,
     quantities, quantity_attributes, unit_definitions, value_attributes, variable_attributes,
 };
-use crate::package::Capabilities;
-use crate::package::xml::{Attribute, Writer, attribute, element, empty_element, optional};
 use crate::model::sampled::{ClockVariable, SAMPLE_TIME};
 use crate::model::variable::Kind;
 use crate::model::{Description, Edition, StartValues};
+use crate::package::Capabilities;
+use crate::package::xml::{Attribute, Writer, attribute, element, empty_element, optional};
 
 /// Value reference of the first variable.
 const FIRST: usize = 0;

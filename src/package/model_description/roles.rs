@@ -1,10 +1,10 @@
 //! What the standards derive from a variable's causality and variability.
 
-use crate::package::Capabilities;
-use crate::package::xml::real;
 use crate::model::structure::DependencyKind;
 use crate::model::variable::{Causality, Kind, Variability, Variable};
 use crate::model::{Description, Edition};
+use crate::package::Capabilities;
+use crate::package::xml::real;
 
 /// The attribute `causality`.
 pub fn causality(variable: &Variable) -> &'static str {

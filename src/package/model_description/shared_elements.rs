@@ -4,11 +4,11 @@ use std::{io, ptr};
 
 use super::roles::{self, Dependencies};
 use crate::fmi::LOG_CATEGORIES;
-use crate::package::xml::{Attribute, Writer, attribute, element, empty_element, optional, real};
 use crate::model::quantity::{Enumeration, Quantity};
 use crate::model::unit_of_measure::UnitOfMeasure;
 use crate::model::variable::{Kind, Variable};
 use crate::model::{Description, StartValues};
+use crate::package::xml::{Attribute, Writer, attribute, element, empty_element, optional, real};
 
 /// Quantities of some variables, each once, in the order of their first use.
 pub fn quantities<'a>(variables: impl IntoIterator<Item = &'a Variable>) -> Vec<&'static Quantity> {

@@ -3,10 +3,10 @@
 
 use std::io;
 
+use crate::model::Description;
 use crate::package::FmiVersion;
 use crate::package::plug::Plug;
 use crate::package::xml::{Writer, attribute, document, element, empty_element};
-use crate::model::Description;
 
 /// The document `fmiTerminalsAndIcons`.
 pub fn terminals_and_icons(description: &Description) -> String {

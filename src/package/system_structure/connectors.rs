@@ -5,8 +5,8 @@ use std::io;
 use super::component::Component;
 use super::form::SystemForm;
 use super::type_definitions::data_type;
-use crate::package::xml::{Writer, attribute, element, empty_element, optional};
 use crate::model::variable::{Causality, Variable};
+use crate::package::xml::{Writer, attribute, element, empty_element, optional};
 
 /// A variable and the name of its connector.
 type Named = (String, &'static Variable);

@@ -5,12 +5,12 @@ use super::description::system_structure_description;
 use super::form::SystemForm;
 use super::page::page;
 use super::parameters::parameter_set;
+use crate::model::system::System;
+use crate::model::{Description, StartValues};
 use crate::package::contents::{Entry, owned};
 use crate::package::loop_diagram::diagram_name;
 use crate::package::loop_diagram::loop_diagram;
 use crate::package::{self, Form, GenerationTime, Library, PackageError, archive};
-use crate::model::system::System;
-use crate::model::{Description, StartValues};
 
 /// All files of the package of one system, sorted by path. `start_values` are those that somebody wants other than
 /// the system's.

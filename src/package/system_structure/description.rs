@@ -7,9 +7,9 @@ use super::connectors::{component_connectors, connections, system_connectors};
 use super::experiment::{COSIM_NAMESPACE, OMSIMULATOR_NAMESPACE, default_experiment, system_annotations};
 use super::form::SystemForm;
 use super::type_definitions::{self, units};
+use crate::model::system::System;
 use crate::package::GenerationTime;
 use crate::package::xml::{Writer, attribute, document, element, empty_element, origin};
-use crate::model::system::System;
 
 /// Namespace of the elements with the prefix `ssd`.
 const NAMESPACE: &str = "http://ssp-standard.org/SSP1/SystemStructureDescription";

@@ -3,8 +3,8 @@
 
 use std::io;
 
-use crate::package::xml::{Writer, attribute, element, empty_element, real};
 use crate::model::System;
+use crate::package::xml::{Writer, attribute, element, empty_element, real};
 
 /// Namespace of libcosim's annotation.
 pub const COSIM_NAMESPACE: &str = "http://opensimulationplatform.com/SSP/OSPAnnotations";

@@ -1,7 +1,7 @@
 //! The forms in which a system is packaged.
 
-use crate::package::Form;
 use crate::model::variable::Kind;
+use crate::package::Form;
 
 /// What a system is packaged for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

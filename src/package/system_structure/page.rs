@@ -1,10 +1,10 @@
 //! First page of a system's documentation.
 
 use super::form::SystemForm;
+use crate::model::system::System;
 use crate::package::GenerationTime;
 use crate::package::documentation::STYLE;
 use crate::package::loop_diagram::diagram_name;
-use crate::model::system::System;
 
 /// The page as HTML.
 pub fn page(system: &System, form: SystemForm, time: GenerationTime) -> String {

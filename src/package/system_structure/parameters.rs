@@ -5,11 +5,11 @@
 
 use super::form::SystemForm;
 use super::type_definitions::{self, data_type, units};
-use crate::package::GenerationTime;
-use crate::package::xml::{attribute, document, element, origin};
 use crate::model::system::System;
 use crate::model::variable::{Causality, Kind, Variable};
 use crate::model::{Description, StartValues};
+use crate::package::GenerationTime;
+use crate::package::xml::{attribute, document, element, origin};
 
 /// Namespace of the elements with the prefix `ssv`.
 const NAMESPACE: &str = "http://ssp-standard.org/SSP1/SystemStructureParameterValues";

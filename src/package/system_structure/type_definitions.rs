@@ -3,9 +3,9 @@
 use std::io;
 
 use super::form::SystemForm;
+use crate::model::variable::{Kind, Variable};
 use crate::package::model_description::{base_unit, literal, units_of_measure};
 use crate::package::xml::{Writer, attribute, element, empty_element, optional};
-use crate::model::variable::{Kind, Variable};
 
 /// Namespace of the elements with the prefix `ssc`.
 pub const NAMESPACE: &str = "http://ssp-standard.org/SSP1/SystemStructureCommon";

@@ -1,6 +1,6 @@
-//! All runs: every contender on every draw of every spread.
+//! All runs: every candidate on every draw of every spread.
 
-use super::contender::{CONTENDERS, Contender};
+use super::candidate::{CANDIDATES, ObserverCandidate};
 use super::spread::SPREADS;
 use super::trial::{self, Outcome};
 use crate::signal::BallReference::{self, Sinusoids, Steps};
@@ -11,16 +11,16 @@ use crate::study::{Progress, StudyError};
 
 pub const REFERENCES: [BallReference; 2] = [Sinusoids, Steps];
 
-/// Outcomes by `[spread][reference][contender][run]`.
+/// Outcomes by `[spread][reference][candidate][run]`.
 pub struct Campaign {
     pub outcomes: Vec<Vec<Vec<Vec<Outcome>>>>,
 }
 
 impl Campaign {
-    /// At most `cap` runs per spread and reference; `contenders(spread, reference)` names who runs.
+    /// At most `cap` runs per spread and reference; `candidates(spread, reference)` names who runs.
     pub fn simulate(
         packages: &LoopPackages,
-        contenders: impl Fn(usize, usize) -> [Contender; CONTENDERS],
+        candidates: impl Fn(usize, usize) -> [ObserverCandidate; CANDIDATES],
         cap: u32,
         progress: Progress<'_>,
     ) -> Result<Self, StudyError> {
@@ -29,8 +29,8 @@ impl Campaign {
         for (spread, widths) in SPREADS.iter().enumerate() {
             for reference in 0..REFERENCES.len() {
                 let field = fields.len();
-                fields.push(contenders(spread, reference));
-                for who in 0..CONTENDERS {
+                fields.push(candidates(spread, reference));
+                for who in 0..CANDIDATES {
                     let runs = 0..widths.runs.min(cap);
                     cases.extend(runs.map(|run| (spread, reference, (field, who), run)));
                 }
@@ -46,8 +46,8 @@ impl Campaign {
             .iter()
             .map(|spread| {
                 let mut runs = || outcomes.by_ref().take(spread.runs.min(cap) as usize).collect();
-                let mut by_contender = || (0..CONTENDERS).map(|_| runs()).collect();
-                REFERENCES.iter().map(|_| by_contender()).collect()
+                let mut by_candidate = || (0..CANDIDATES).map(|_| runs()).collect();
+                REFERENCES.iter().map(|_| by_candidate()).collect()
             })
             .collect();
         Ok(Self { outcomes })
@@ -58,7 +58,7 @@ impl Campaign {
         self.of(spread, 0, 0).len() as u32
     }
 
-    /// Runs of a contender.
+    /// Runs of a candidate.
     pub fn of(&self, spread: usize, reference: usize, who: usize) -> &[Outcome] {
         &self.outcomes[spread][reference][who]
     }

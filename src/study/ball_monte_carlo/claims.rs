@@ -1,7 +1,7 @@
 //! What is claimed of the estimators under spread parameters and noise, and what to choose.
 
 use super::campaign::{Campaign, REFERENCES, median};
-use super::contender::{ADAPTIVE_OFFSET, ADAPTIVE_RESISTANCE, Contender, DREM, FROZEN, NEWTON};
+use super::candidate::{ADAPTIVE_OFFSET, ADAPTIVE_RESISTANCE, DREM, FROZEN, NEWTON, ObserverCandidate};
 use super::spread::{Draw, SPREADS};
 use super::trial::Outcome;
 use super::tuning::{NOISES, Score, Tuning};
@@ -103,14 +103,14 @@ fn drem_under_noise(tuning: &Tuning, campaign: &Campaign) -> Claim {
         )
 }
 
-/// Survival and errors of every contender.
-pub fn tables(tuning: &Tuning, contenders: &[Contender], campaign: &Campaign) -> Vec<Summary> {
+/// Survival and errors of every candidate.
+pub fn tables(tuning: &Tuning, candidates: &[ObserverCandidate], campaign: &Campaign) -> Vec<Summary> {
     let mut tables: Vec<Summary> = SPREADS
         .iter()
         .enumerate()
         .map(|(spread, widths)| {
-            let rows = contenders.iter().enumerate().map(|(who, contender)| {
-                let mut row = vec![contender.name.to_owned(), quantity(1e3 * contender.sample_time, "ms")];
+            let rows = candidates.iter().enumerate().map(|(who, candidate)| {
+                let mut row = vec![candidate.name.to_owned(), quantity(1e3 * candidate.sample_time, "ms")];
                 for reference in 0..REFERENCES.len() {
                     let outcomes = campaign.of(spread, reference, who);
                     row.push(format!("{} of {}", campaign.survivors(spread, reference, who), outcomes.len()));
@@ -212,7 +212,7 @@ fn tuning_table(tuning: &Tuning) -> Summary {
 }
 
 /// Which estimator to choose when, from the numbers.
-pub fn advice(tuning: &Tuning, contenders: &[Contender], campaign: &Campaign) -> Vec<String> {
+pub fn advice(tuning: &Tuning, candidates: &[ObserverCandidate], campaign: &Campaign) -> Vec<String> {
     let lost = |spread: usize, who: usize| -> usize {
         (0..REFERENCES.len())
             .map(|reference| {
@@ -227,8 +227,8 @@ pub fn advice(tuning: &Tuning, contenders: &[Contender], campaign: &Campaign) ->
         .iter()
         .enumerate()
         .map(|(spread, widths)| {
-            let fewest = (0..contenders.len()).map(|who| lost(spread, who)).min().unwrap_or_default();
-            let best = (0..contenders.len())
+            let fewest = (0..candidates.len()).map(|who| lost(spread, who)).min().unwrap_or_default();
+            let best = (0..candidates.len())
                 .filter(|who| lost(spread, *who) == fewest)
                 .min_by(|a, b| error(spread, *a).total_cmp(&error(spread, *b)))
                 .unwrap_or_default();
@@ -236,7 +236,7 @@ pub fn advice(tuning: &Tuning, contenders: &[Contender], campaign: &Campaign) ->
                 "{} ({}): {}, {fewest} of {} lost, rms |y - y*| {}",
                 widths.name,
                 widths.text(),
-                contenders[best].name,
+                candidates[best].name,
                 2 * campaign.runs(spread),
                 finite(1e3 * error(spread, best), "mm")
             )

@@ -1,7 +1,7 @@
 //! Distributions of the errors, what was lost, and DREM's tuning.
 
 use super::campaign::{Campaign, REFERENCES, median};
-use super::contender::{ADAPTIVE_OFFSET, ADAPTIVE_RESISTANCE, Contender, NEWTON};
+use super::candidate::{ADAPTIVE_OFFSET, ADAPTIVE_RESISTANCE, NEWTON, ObserverCandidate};
 use super::spread::{Draw, SPREADS};
 use super::trial::Outcome;
 use super::tuning::{GAINS, NOISES, NORMALISATIONS, Score, Tuning};
@@ -13,16 +13,16 @@ use crate::study::{FigureWithData, Table};
 /// Noiseless runs stand here on the axis of the noise \[A\].
 const NO_NOISE: f64 = 1e-6;
 
-pub fn all(tuning: &Tuning, contenders: &[Contender], campaign: &Campaign) -> Vec<FigureWithData> {
+pub fn all(tuning: &Tuning, candidates: &[ObserverCandidate], campaign: &Campaign) -> Vec<FigureWithData> {
     let position = distributions(
         FigureWithData::new(
             "ball_monte_carlo_position",
             "Monte-Carlo: deviation from the wanted position",
-            data(contenders, campaign),
+            data(candidates, campaign),
         ),
         "Share of all runs whose rms |y - y*| from 2 to 4 s is below the value on the axis. A curve ends at \
          the share of runs that survive.",
-        contenders,
+        candidates,
         campaign,
         ("rms |y - y*| [mm]", 1e3, Outcome::position),
     );
@@ -30,22 +30,22 @@ pub fn all(tuning: &Tuning, contenders: &[Contender], campaign: &Campaign) -> Ve
         FigureWithData::new(
             "ball_monte_carlo_flux",
             "Monte-Carlo: error of the flux estimate",
-            medians(contenders, campaign),
+            medians(candidates, campaign),
         ),
         "The same for the error of the flux estimate: who survives without estimating the flux is not \
          better off.",
-        contenders,
+        candidates,
         campaign,
         ("rms flux error / lam0 [%]", 100.0, Outcome::flux),
     );
     vec![position, flux, losses(campaign), tuning_figure(tuning)]
 }
 
-/// A panel per spread and reference with a cumulative distribution per contender.
+/// A panel per spread and reference with a cumulative distribution per candidate.
 fn distributions(
     figure: FigureWithData,
     caption: &str,
-    contenders: &[Contender],
+    candidates: &[ObserverCandidate],
     campaign: &Campaign,
     (label, factor, value): (&str, f64, fn(&Outcome) -> f64),
 ) -> FigureWithData {
@@ -55,7 +55,7 @@ fn distributions(
             let name = format!("{}, {signal:?}, {} runs", widths.name, campaign.runs(spread)).to_lowercase();
             let panel = Panel::new(format!("spread {}", capitalised(&name)), label, "share of runs [%]");
             let panel = panel.x_logarithmic().from_to(0.0, 104.0);
-            panels.push(contenders.iter().enumerate().fold(panel, |panel, (who, contender)| {
+            panels.push(candidates.iter().enumerate().fold(panel, |panel, (who, candidate)| {
                 let outcomes = campaign.of(spread, reference, who);
                 let mut values: Vec<f64> =
                     outcomes.iter().map(value).filter(|value| value.is_finite()).collect();
@@ -63,7 +63,7 @@ fn distributions(
                 let share = |rank: usize| 100.0 * (rank + 1) as f64 / outcomes.len() as f64;
                 let points = values.iter().enumerate().map(|(rank, value)| (factor * value, share(rank)));
                 // Where there is room for it.
-                let legend = if (spread, reference) == (2, 1) { contender.name } else { "" };
+                let legend = if (spread, reference) == (2, 1) { candidate.name } else { "" };
                 panel.held(legend, who, points)
             }));
         }
@@ -82,7 +82,7 @@ fn capitalised(text: &str) -> String {
 type Part = fn(&Draw) -> f64;
 
 /// A row per run.
-fn data(contenders: &[Contender], campaign: &Campaign) -> Table {
+fn data(candidates: &[ObserverCandidate], campaign: &Campaign) -> Table {
     let cases: Vec<(usize, usize, u32)> = indices([SPREADS.len(), REFERENCES.len()])
         .into_iter()
         .flat_map(|[spread, reference]| (0..campaign.runs(spread)).map(move |run| (spread, reference, run)))
@@ -104,8 +104,8 @@ fn data(contenders: &[Contender], campaign: &Campaign) -> Table {
     for (header, part) in parts {
         add(header.to_owned(), &|spread, _, run| part(&SPREADS[spread].draw(run)));
     }
-    for (who, contender) in contenders.iter().enumerate() {
-        let name = contender.name.replace(',', "");
+    for (who, candidate) in candidates.iter().enumerate() {
+        let name = candidate.name.replace(',', "");
         let outcome =
             |spread: usize, reference: usize, run: u32| campaign.of(spread, reference, who)[run as usize];
         add(format!("{name}: rms position error; inf if lost [m]"), &|spread, reference, run| {
@@ -125,7 +125,7 @@ fn data(contenders: &[Contender], campaign: &Campaign) -> Table {
 }
 
 /// A row per spread and reference.
-fn medians(contenders: &[Contender], campaign: &Campaign) -> Table {
+fn medians(candidates: &[ObserverCandidate], campaign: &Campaign) -> Table {
     let cases = indices([SPREADS.len(), REFERENCES.len()]);
     let mut table = Table::default();
     let mut add = |header: String, value: &dyn Fn(usize, usize) -> f64| {
@@ -134,8 +134,8 @@ fn medians(contenders: &[Contender], campaign: &Campaign) -> Table {
     add("spread [1 = A]".to_owned(), &|spread, _| (spread + 1) as f64);
     add("reference [1 = sinusoids; 2 = steps]".to_owned(), &|_, reference| (reference + 1) as f64);
     add("runs [1]".to_owned(), &|spread, _| f64::from(campaign.runs(spread)));
-    for (who, contender) in contenders.iter().enumerate() {
-        let name = contender.name.replace(',', "");
+    for (who, candidate) in candidates.iter().enumerate() {
+        let name = candidate.name.replace(',', "");
         add(format!("{name}: survivors [1]"), &|spread, reference| {
             campaign.survivors(spread, reference, who) as f64
         });

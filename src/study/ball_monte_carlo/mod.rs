@@ -1,8 +1,8 @@
 //! The levitated ball under wrong parameters and noise: who keeps it up, and how well.
 
 mod campaign;
+mod candidate;
 mod claims;
-mod contender;
 mod figures;
 mod spread;
 mod trial;
@@ -16,7 +16,7 @@ use super::{Findings, Progress, StudyError};
 use crate::host::Value;
 use crate::model::system::BALL;
 use campaign::Campaign;
-use contender::Contender;
+use candidate::ObserverCandidate;
 use spread::SPREADS;
 use tuning::Tuning;
 
@@ -36,8 +36,8 @@ const PROVENANCE: &[&str] = &[
 /// Share of the work that tuning is.
 const TUNING: f64 = 0.25;
 
-fn newton() -> Contender {
-    Contender::newton("Newton", &[("observer.kind", Value::Text("polynomial_newton"))])
+fn newton() -> ObserverCandidate {
+    ObserverCandidate::newton("Newton", &[("observer.kind", Value::Text("polynomial_newton"))])
 }
 
 /// How much of the experiment is run.
@@ -63,18 +63,18 @@ pub fn run_extent(packages: &Path, extent: Extent, progress: Progress<'_>) -> Re
     let packages = LoopPackages::open(packages, &BALL)?;
     let tuning = Tuning::simulate(&packages, extent.stride, &part(progress, 0.0, TUNING))?;
     let field = |spread: usize, reference: usize| {
-        contender::all(&tuning.setting_for(reference, SPREADS[spread].noise))
+        candidate::all(&tuning.setting_for(reference, SPREADS[spread].noise))
     };
     let campaign = Campaign::simulate(&packages, field, extent.runs, &part(progress, TUNING, 0.99))?;
     // For names and sample times, which all fields share.
-    let contenders = field(0, 0);
+    let candidates = field(0, 0);
     Ok(Findings {
         name: "ball-monte-carlo",
         title: "Levitated ball under wrong parameters and noise",
         provenance: PROVENANCE,
-        figures: figures::all(&tuning, &contenders, &campaign),
+        figures: figures::all(&tuning, &candidates, &campaign),
         claims: claims::all(&tuning, &campaign),
-        summaries: claims::tables(&tuning, &contenders, &campaign),
-        advice: claims::advice(&tuning, &contenders, &campaign),
+        summaries: claims::tables(&tuning, &candidates, &campaign),
+        advice: claims::advice(&tuning, &candidates, &campaign),
     })
 }

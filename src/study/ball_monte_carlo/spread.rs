@@ -78,7 +78,7 @@ const EXACT: Spread = Spread {
     runs: 250,
 };
 
-/// One run's draw; the same for every contender.
+/// One run's draw; the same for every candidate.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Draw {
     pub resistance: f64,

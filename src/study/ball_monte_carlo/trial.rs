@@ -1,6 +1,6 @@
 //! One run of the loop, scored while it runs.
 
-use super::contender::Contender;
+use super::candidate::ObserverCandidate;
 use super::spread::Draw;
 use crate::host::{Trace, Value};
 use crate::plant::levitated_ball::LevitatedBall;
@@ -57,7 +57,7 @@ const STEPS_BETWEEN_LOOKS: usize = 100;
 /// the controller does not know it.
 pub fn run(
     packages: &LoopPackages,
-    contender: &Contender,
+    candidate: &ObserverCandidate,
     reference: BallReference,
     draw: &Draw,
 ) -> Result<Outcome, StudyError> {
@@ -78,12 +78,12 @@ pub fn run(
         ("sensor.seed", Value::Integer(draw.seed)),
     ];
     let initial_flux = carrying_flux - draw.flux * believed.equilibrium_flux();
-    let mut controller = contender.parameters.clone();
+    let mut controller = candidate.parameters.clone();
     controller.extend([
         ("observer.initial.flux", Value::Real(initial_flux)),
         ("controller.reference_filter", Value::Real(reference.filter_rate())),
     ]);
-    let sample_time = contender.sample_time;
+    let sample_time = candidate.sample_time;
     let mut control_loop = packages.connect(&plant, &controller, sample_time)?;
     control_loop.add_offset("voltage", draw.voltage_offset)?;
     control_loop.record(&[

@@ -1,7 +1,7 @@
 //! DREM at its best: which gain, filters and normalisation serve it under noise.
 
 use super::campaign::REFERENCES;
-use super::contender::{Contender, DremSetting};
+use super::candidate::{DremSetting, ObserverCandidate};
 use super::spread::Draw;
 use super::trial::{self, Outcome};
 use crate::signal::BallReference;
@@ -47,14 +47,14 @@ impl Tuning {
         progress: Progress<'_>,
     ) -> Result<Self, StudyError> {
         let settings: Vec<DremSetting> = settings().into_iter().step_by(stride).collect();
-        let mut contenders: Vec<Contender> =
-            settings.iter().map(|setting| Contender::drem("", setting)).collect();
-        contenders.push(super::newton());
-        let cases = indices([REFERENCES.len(), NOISES.len(), contenders.len()]);
+        let mut candidates: Vec<ObserverCandidate> =
+            settings.iter().map(|setting| ObserverCandidate::drem("", setting)).collect();
+        candidates.push(super::newton());
+        let cases = indices([REFERENCES.len(), NOISES.len(), candidates.len()]);
         let scores = sweep(&cases, progress, "ball-monte-carlo: tuning DREM", |&[reference, noise, who]| {
-            score(packages, &contenders[who], REFERENCES[reference], NOISES[noise])
+            score(packages, &candidates[who], REFERENCES[reference], NOISES[noise])
         })?;
-        let rows: Vec<Vec<Score>> = scores.chunks(contenders.len()).map(<[Score]>::to_vec).collect();
+        let rows: Vec<Vec<Score>> = scores.chunks(candidates.len()).map(<[Score]>::to_vec).collect();
         let mut scores: Vec<Vec<Vec<Score>>> = rows.chunks(NOISES.len()).map(<[_]>::to_vec).collect();
         let newton =
             scores.iter_mut().map(|noises| noises.iter_mut().filter_map(Vec::pop).collect()).collect();
@@ -107,14 +107,14 @@ fn settings() -> Vec<DremSetting> {
 
 fn score(
     packages: &LoopPackages,
-    contender: &Contender,
+    candidate: &ObserverCandidate,
     reference: BallReference,
     noise: f64,
 ) -> Result<Score, StudyError> {
     let (mut survivors, mut flux_squares, mut position_squares) = (0.0, 0.0, 0.0);
     for (seed, flux) in FLUX_OFFSETS.into_iter().enumerate() {
         let draw = Draw { noise, flux, seed: seed as i32, ..Draw::default() };
-        if let Outcome::Survived { position, flux } = trial::run(packages, contender, reference, &draw)? {
+        if let Outcome::Survived { position, flux } = trial::run(packages, candidate, reference, &draw)? {
             survivors += 1.0;
             flux_squares += flux * flux;
             position_squares += position * position;

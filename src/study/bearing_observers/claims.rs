@@ -1,7 +1,7 @@
 //! What the paper says about its observers under other conditions than those of its figures.
 
+use super::candidates::{Conditions, rms_error, simulate};
 use super::comparison::Comparison;
-use super::contenders::{Conditions, rms_error, simulate};
 use super::presentation::index_of;
 use super::{INITIAL_FLUX, NOISES, SAMPLE_TIMES};
 use crate::host::Value;

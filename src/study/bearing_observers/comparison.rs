@@ -1,7 +1,7 @@
 //! All observers under all conditions.
 
 use super::bound::{Bound, cramer_rao};
-use super::contenders::{CONTENDERS, Conditions, rms_error, simulate, stayed_up};
+use super::candidates::{CANDIDATES, Conditions, rms_error, simulate, stayed_up};
 use super::{NOISES, SAMPLE_TIMES, seeds};
 use crate::study::loop_packages::LoopPackages;
 use crate::study::metrics::{indicator, root_mean_square};
@@ -28,7 +28,7 @@ pub struct Comparison {
 
 impl Comparison {
     pub fn simulate(packages: &LoopPackages, progress: Progress<'_>) -> Result<Self, StudyError> {
-        let conditions = indices([SAMPLE_TIMES.len(), NOISES.len(), CONTENDERS.len()]);
+        let conditions = indices([SAMPLE_TIMES.len(), NOISES.len(), CANDIDATES.len()]);
         let with_seeds = |case: [usize; 3]| (0..seeds(SAMPLE_TIMES[case[0]])).map(move |seed| (case, seed));
         let cases: Vec<_> = conditions.iter().flat_map(|case| with_seeds(*case)).collect();
         let action = "bearing-observers: comparing observers";
@@ -69,7 +69,7 @@ fn score(
     who: usize,
     seed: i32,
 ) -> Result<Score, StudyError> {
-    let parameters = CONTENDERS[who].parameters(noise);
+    let parameters = CANDIDATES[who].parameters(noise);
     let run = |feedback| simulate(packages, Conditions { sample_time, noise, seed, feedback }, &parameters);
     let (observed, in_loop) = (run("state")?, run("estimate")?);
     Ok(Score {

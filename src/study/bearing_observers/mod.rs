@@ -1,9 +1,9 @@
 //! All observers of the magnetic bearing on the same noisy data, next to the Cramer-Rao bound, and in the loop.
 
 mod bound;
+mod candidates;
 mod claims;
 mod comparison;
-mod contenders;
 mod presentation;
 mod settling;
 

@@ -1,7 +1,7 @@
 //! Plots, tables and advice from the comparison.
 
+use super::candidates::CANDIDATES;
 use super::comparison::{Comparison, Score};
-use super::contenders::CONTENDERS;
 use super::{NOISES, SAMPLE_TIMES, seeds};
 use crate::chart::Panel;
 use crate::study::metrics::largest;
@@ -15,11 +15,11 @@ const PAPER: usize = 1;
 const SIGNAL: f64 = 0.15;
 const NOISE_AXIS: &str = "sensor noise (standard deviation) [m]";
 /// Colour of the bound, after those of the observers.
-const BOUND: usize = CONTENDERS.len();
+const BOUND: usize = CANDIDATES.len();
 
-/// Index of the contender called `name`.
+/// Index of the candidate called `name`.
 pub fn index_of(name: &str) -> usize {
-    CONTENDERS.iter().position(|contender| contender.name == name).unwrap_or_default()
+    CANDIDATES.iter().position(|candidate| candidate.name == name).unwrap_or_default()
 }
 
 pub fn figures(comparison: &Comparison) -> Vec<FigureWithData> {
@@ -51,30 +51,30 @@ fn error_panel(comparison: &Comparison, time: usize, flux: bool, title: &str) ->
         .iter()
         .zip(&comparison.bounds[time])
         .map(|(noise, bound)| (*noise, if flux { bound.flux } else { bound.velocity }));
-    contenders(panel, comparison, time, false, value).dashed("", BOUND, bounds)
+    candidates(panel, comparison, time, false, value).dashed("", BOUND, bounds)
 }
 
 /// Also carries the legend, since its lower half is empty where the loops stay up.
 fn survival_panel(comparison: &Comparison, time: usize, title: &str) -> Panel {
     let panel = Panel::new(title, NOISE_AXIS, "share of runs [%]").x_logarithmic().from_to(0.0, 105.0);
-    let panel = contenders(panel, comparison, time, time == 0, |score| 100.0 * score.survival);
+    let panel = candidates(panel, comparison, time, time == 0, |score| 100.0 * score.survival);
     let label = if time == 0 { "Cramer-Rao bound" } else { "" };
     // A line of the legend that has no points here.
     panel.dashed(label, BOUND, [])
 }
 
 /// A line per observer.
-fn contenders(
+fn candidates(
     panel: Panel,
     comparison: &Comparison,
     time: usize,
     with_legend: bool,
     value: fn(&Score) -> f64,
 ) -> Panel {
-    CONTENDERS.iter().enumerate().fold(panel, |panel, (who, contender)| {
+    CANDIDATES.iter().enumerate().fold(panel, |panel, (who, candidate)| {
         let points =
             NOISES.iter().zip(&comparison.scores[time]).map(|(noise, row)| (*noise, value(&row[who])));
-        let label = if with_legend { contender.name } else { "" };
+        let label = if with_legend { candidate.name } else { "" };
         panel.line(label, who, points)
     })
 }
@@ -91,8 +91,8 @@ fn data(comparison: &Comparison) -> Table {
     add("sensor noise [m]".to_owned(), &|_, noise| NOISES[noise]);
     add("Cramer-Rao bound of velocity [m/s]".to_owned(), &|time, noise| bounds[time][noise].velocity);
     add("Cramer-Rao bound of flux [Wb]".to_owned(), &|time, noise| bounds[time][noise].flux);
-    for (who, contender) in CONTENDERS.iter().enumerate() {
-        let name = contender.name.replace(',', "");
+    for (who, candidate) in CANDIDATES.iter().enumerate() {
+        let name = candidate.name.replace(',', "");
         add(format!("{name}: rms velocity error [m/s]"), &|time, noise| scores[time][noise][who].velocity);
         add(format!("{name}: rms flux error [Wb]"), &|time, noise| scores[time][noise][who].flux);
         add(format!("{name}: share of runs up [1]"), &|time, noise| scores[time][noise][who].survival);
@@ -106,10 +106,10 @@ pub fn tables(comparison: &Comparison) -> Vec<Summary> {
         .enumerate()
         .map(|(time, sample_time)| {
             let noises = NOISES.map(|noise| format!("noise {}", quantity(noise, "m")));
-            let mut rows: Vec<Vec<String>> = CONTENDERS
+            let mut rows: Vec<Vec<String>> = CANDIDATES
                 .iter()
                 .enumerate()
-                .map(|(who, contender)| {
+                .map(|(who, candidate)| {
                     let cells = comparison.scores[time].iter().map(|row| {
                         let score = row[who];
                         format!(
@@ -119,7 +119,7 @@ pub fn tables(comparison: &Comparison) -> Vec<Summary> {
                             100.0 * score.survival
                         )
                     });
-                    std::iter::once(contender.name.to_owned()).chain(cells).collect()
+                    std::iter::once(candidate.name.to_owned()).chain(cells).collect()
                 })
                 .collect();
             let bounds = comparison.bounds[time]
@@ -156,7 +156,7 @@ pub fn advice(comparison: &Comparison) -> Vec<String> {
             Some(who) => format!(
                 "at {} {} ({:.1e} Wb)",
                 if *noise == 0.0 { "no noise".to_owned() } else { quantity(*noise, "m") },
-                CONTENDERS[*who].name,
+                CANDIDATES[*who].name,
                 row[*who].flux
             ),
             None => format!("at {} none keeps the loop up", quantity(*noise, "m")),

@@ -5,7 +5,7 @@ use super::ranking::{Comparison, MEASUREMENTS, NOISES, REFERENCES, Start};
 use super::recording::SENSOR;
 use super::simulation::{ESTIMATES, Measurement, truth};
 use crate::chart::{Panel, Series, Stroke};
-use crate::observer::han_function::HanFunction;
+use crate::observer::fal::Fal;
 use crate::study::findings::{FigureWithData, Table};
 use crate::study::run::Run;
 
@@ -27,7 +27,7 @@ pub fn nonlinear_gain() -> FigureWithData {
     let mut whole = panel("fal(e) = e / delta^(1 - alpha) up to delta = 0.1, |e|^alpha beyond");
     let mut zone = panel("around the linear zone").between(-0.2, 0.2).from_to(-0.8, 0.8);
     for (colour, exponent) in EXPONENTS.into_iter().enumerate() {
-        let function = HanFunction::new(exponent, LINEAR_ZONE);
+        let function = Fal::new(exponent, LINEAR_ZONE);
         let values: Vec<f64> = errors.iter().map(|error| function.value(*error)).collect();
         let label =
             if exponent == 1.0 { "alpha = 1, linear".to_owned() } else { format!("alpha = {exponent}") };

@@ -62,7 +62,7 @@ pub struct Conditions {
     pub noise: f64,
     pub seed: u64,
     /// Acceleration \[m/s2\] by a disturbing force, and from when on \[s\].
-    pub push: (f64, f64),
+    pub disturbance_step: (f64, f64),
     /// \[s\]
     pub duration: f64,
 }
@@ -76,7 +76,7 @@ impl Conditions {
             mass_ratio: 1.0,
             noise: 0.0,
             seed: 1,
-            push: (0.0, 0.0),
+            disturbance_step: (0.0, 0.0),
             duration,
         }
     }
@@ -102,7 +102,7 @@ pub struct Recording {
 impl Recording {
     /// Runs the loop.
     pub fn make(conditions: &Conditions) -> Self {
-        let Conditions { set_point, noise, push: (push, push_from), .. } = *conditions;
+        let Conditions { set_point, noise, disturbance_step: (acceleration, begin), .. } = *conditions;
         let rig = MaglevRig { mass: RIG.mass * conditions.mass_ratio, ..RIG };
         let settings = PidSettings {
             proportional_gain: GAINS[0],
@@ -124,7 +124,7 @@ impl Recording {
             let sensor_voltage =
                 SENSOR.voltage(state.position) + if noise > 0.0 { noise * source.sample() } else { 0.0 };
             let voltage = pid.update(&settings, sensor_voltage, reference);
-            let force = if push != 0.0 && time >= push_from { rig.mass * push } else { 0.0 };
+            let force = if acceleration != 0.0 && time >= begin { rig.mass * acceleration } else { 0.0 };
             recording.reference.push(reference);
             recording.position.push(state.position);
             recording.velocity.push(state.velocity);
@@ -216,9 +216,9 @@ mod tests {
             .collect();
         let deviation = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
         assert!((deviation / 1e-3 - 1.0).abs() < 0.05);
-        let pushed = Recording::make(&Conditions { push: (1.0, 1.0), ..clean });
-        assert_eq!(pushed.position[1000], pushed.position[0]);
-        assert!((pushed.acceleration[1000] - 1.0).abs() < 1e-9);
+        let disturbed = Recording::make(&Conditions { disturbance_step: (1.0, 1.0), ..clean });
+        assert_eq!(disturbed.position[1000], disturbed.position[0]);
+        assert!((disturbed.acceleration[1000] - 1.0).abs() < 1e-9);
         // Long enough for the integral.
         let heavy = Recording::make(&Conditions { mass_ratio: 1.2, duration: 30.0, ..clean });
         let ratio = heavy.voltage.last().unwrap() / heavy.position.last().unwrap() * 9e-3 / rest.voltage[0];

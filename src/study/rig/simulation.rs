@@ -22,7 +22,7 @@ pub struct Scenario {
     /// Mass over that of Table 1.
     pub mass_ratio: f64,
     /// Acceleration \[m/s2\] by a disturbing force, and from when on \[s\].
-    pub push: (f64, f64),
+    pub disturbance_step: (f64, f64),
     /// \[s\]
     pub duration: f64,
     /// Of the controller.
@@ -38,7 +38,7 @@ impl Scenario {
             noise: 0.0,
             seed: 1,
             mass_ratio: 1.0,
-            push: (0.0, 0.0),
+            disturbance_step: (0.0, 0.0),
             duration,
             parameters: parameters.to_vec(),
         }
@@ -53,7 +53,8 @@ pub const ESTIMATES: [&str; 3] = ["position", "velocity", "extended"];
 
 /// Runs a scenario.
 pub fn simulate(packages: &LoopPackages, scenario: &Scenario) -> Result<Run, StudyError> {
-    let Scenario { set_point, noise, seed, mass_ratio, push: (push, push_from), .. } = *scenario;
+    let Scenario { set_point, noise, seed, mass_ratio, disturbance_step: (acceleration, begin), .. } =
+        *scenario;
     let rest = SENSOR.voltage(set_point);
     let rig = MaglevRig { mass: RIG.mass * mass_ratio, ..RIG };
     let plant = [
@@ -69,7 +70,7 @@ pub fn simulate(packages: &LoopPackages, scenario: &Scenario) -> Result<Run, Stu
     ];
     controller.extend_from_slice(&scenario.parameters);
     let wanted = |time: f64| rest + scenario.amplitude * scenario.reference.at(time);
-    let is_pushed = |time: f64| push != 0.0 && time >= push_from - 0.5 * SAMPLE_TIME;
+    let is_disturbed = |time: f64| acceleration != 0.0 && time >= begin - 0.5 * SAMPLE_TIME;
     let run = packages.simulate_with(
         &plant,
         &controller,
@@ -90,8 +91,8 @@ pub fn simulate(packages: &LoopPackages, scenario: &Scenario) -> Result<Run, Stu
             if scenario.reference != Reference::Hold {
                 controller.set_by_name("reference", wanted(time))?;
             }
-            if is_pushed(time) {
-                plant.set_by_name("force", rig.mass * push)?;
+            if is_disturbed(time) {
+                plant.set_by_name("force", rig.mass * acceleration)?;
             }
             Ok(())
         },
@@ -99,7 +100,7 @@ pub fn simulate(packages: &LoopPackages, scenario: &Scenario) -> Result<Run, Stu
     let reference = run.time.iter().map(|time| wanted(*time)).collect();
     let samples = run.state("position").iter().zip(&run["controller.voltage"]);
     let acceleration = run.time.iter().zip(samples).map(|(time, (position, voltage))| {
-        let force = if is_pushed(*time) { rig.mass * push } else { 0.0 };
+        let force = if is_disturbed(*time) { rig.mass * acceleration } else { 0.0 };
         rig.acceleration(*position, *voltage, force)
     });
     let acceleration = acceleration.collect();

@@ -22,14 +22,14 @@ fn compensation(outcomes: &[Outcome]) -> Claim {
         "Section 3; the paper itself closes no loop through its observers",
     )
     .stating("An extended state observer lets a feedback compensate disturbances, with strong robustness.")
-    .measured("rms error after a push, PID over disturbance rejection, no noise", ratio, "1")
+    .measured("rms error after a disturbance step, PID over disturbance rejection, no noise", ratio, "1")
     .measured("the same with 1 mV of noise", noisy(pid) / noisy(rejection), "1")
     .measured("PID, no noise", rms(pid), "V")
     .measured("disturbance rejection, no noise", rms(rejection), "V")
     .measured("loops that keep the ball with -20, 0, +20 % mass", rejection.kept as f64, "1")
     .judged(
         ratio > 1.0 && rejection.kept == pid.kept,
-        "Push of 1 m/s² at 1 s: with LESO, wo = 300 rad/s, wc = 60 rad/s and b0 = -3705 the rms error over \
+        "Disturbance step of 1 m/s² at 1 s: with LESO, wo = 300 rad/s, wc = 60 rad/s and b0 = -3705 the rms error over \
          2 s is smaller than with the PID, and as many loops with other masses keep the ball.",
     )
 }

@@ -1,4 +1,4 @@
-//! The ball is pushed: the paper's PID against disturbance rejection through the extended state.
+//! A disturbance step: the paper's PID against disturbance rejection through the extended state.
 
 use crate::chart::Panel;
 use crate::host::Value;
@@ -13,7 +13,7 @@ use crate::study::sweep::sweep;
 use crate::study::{FigureWithData, Progress, StudyError, Summary, Table};
 
 /// 1 m/s2 from 1 s on.
-const PUSH: (f64, f64) = (1.0, 1.0);
+const DISTURBANCE_STEP: (f64, f64) = (1.0, 1.0);
 /// \[s\]
 const DURATION: f64 = 3.0;
 /// Sensor noise of the noisy runs \[V\].
@@ -63,14 +63,14 @@ fn laws() -> Vec<Law> {
     ]
 }
 
-/// What a law made of the push.
+/// What a law made of the disturbance step.
 pub struct Outcome {
     pub law: Law,
     /// Without and with noise, printed mass.
     pub runs: [Run; 2],
-    /// rms of the control error after the push \[V\], without and with noise; none if the ball was lost.
+    /// rms of the control error after the disturbance step \[V\], without and with noise; none if the ball was lost.
     pub errors: [Option<f64>; 2],
-    /// Largest control error after the push, without noise \[V\].
+    /// Largest control error after the disturbance step, without noise \[V\].
     pub peak: f64,
     /// rms change of the voltage from sample to sample with noise \[V\].
     pub effort: f64,
@@ -81,17 +81,18 @@ pub struct Outcome {
 pub fn compare(packages: &LoopPackages, progress: Progress<'_>) -> Result<Vec<Outcome>, StudyError> {
     sweep(&laws(), progress, "rig-observers: pushing the ball", |law| {
         let run = |noise: f64, mass_ratio: f64| {
-            let push = PUSH;
+            let disturbance_step = DISTURBANCE_STEP;
             let scenario = Scenario::new(Reference::Hold, DURATION, &law.parameters);
-            simulate(packages, &Scenario { noise, mass_ratio, push, ..scenario })
+            simulate(packages, &Scenario { noise, mass_ratio, disturbance_step, ..scenario })
         };
         let runs = [run(0.0, 1.0)?, run(NOISE, 1.0)?];
         let kept = MASS_RATIOS
             .iter()
             .map(|ratio| Ok(usize::from(run(NOISE, *ratio)?.lost_at.is_none())))
             .sum::<Result<usize, StudyError>>()?;
-        // y - r from the push on [V].
-        let late = [0, 1].map(|which| runs[which].since(PUSH.1, &control_error(&runs[which])).to_vec());
+        // y - r from the disturbance step on [V].
+        let late =
+            [0, 1].map(|which| runs[which].since(DISTURBANCE_STEP.1, &control_error(&runs[which])).to_vec());
         let errors = [0, 1].map(|which| {
             let error = root_mean_square(&late[which]);
             runs[which].lost_at.is_none().then_some(error)
@@ -121,7 +122,7 @@ pub fn table(outcomes: &[Outcome]) -> Summary {
         ]
     });
     Summary::new(
-        "A push of 1 m/s² at 9 mm: control error over the 2 s after it",
+        "A disturbance step of 1 m/s² at 9 mm: control error over the 2 s after it",
         [
             "law",
             "rms, no noise",
@@ -136,7 +137,7 @@ pub fn table(outcomes: &[Outcome]) -> Summary {
 
 pub fn figure(outcomes: &[Outcome]) -> FigureWithData {
     const TIME: &str = "time [s]";
-    let (start, end) = (PUSH.1 - 0.02, PUSH.1 + 0.3);
+    let (start, end) = (DISTURBANCE_STEP.1 - 0.02, DISTURBANCE_STEP.1 + 0.3);
     let panel = |title: &str, y: &str| Panel::new(title, TIME, y).between(start, end);
     let mut position = panel("no noise", "distance below 9 mm [mm]");
     let mut noisy = panel("sensor noise 1 mV", "distance below 9 mm [mm]");
@@ -159,9 +160,9 @@ pub fn figure(outcomes: &[Outcome]) -> FigureWithData {
             table.add(format!("{name}, {noise}: u [V]"), &run["controller.voltage"]);
         }
     }
-    FigureWithData::new("rig_force_step", "A push of 1 m/s²: PID against disturbance rejection", table)
+    FigureWithData::new("rig_force_step", "A disturbance step of 1 m/s²: PID against disturbance rejection", table)
         .caption(
-            "Position and voltage around the push at 1 s. The PID's slow integral leaves an error that \
+            "Position and voltage around the disturbance step at 1 s. The PID's slow integral leaves an error that \
              disturbance rejection removes within 0.1 s. Loops that lose the ball are in the table only.",
         )
         .panels(3, [position, noisy, voltage])

@@ -1,7 +1,7 @@
 //! Beyond the maglev rig's paper: its observers in the loop, against those of the other papers, and how to start them.
 
+mod candidates;
 mod claims;
-mod contenders;
 mod force_step;
 mod peaking;
 
@@ -11,7 +11,7 @@ use super::loop_packages::LoopPackages;
 use super::sweep::part;
 use super::{Findings, Progress, StudyError, Summary};
 use crate::model::system::RIG as SYSTEM;
-use contenders::{Contender, TESTS, contenders, scores};
+use candidates::{ObserverCandidate, TESTS, candidates, scores};
 
 const PROVENANCE: &[&str] = &[
     "From the paper: LESO and NESO with their printed parameters, and the PID. Not from the paper: the loop through the \
@@ -19,10 +19,10 @@ const PROVENANCE: &[&str] = &[
      acceleration as third state, and the Newton observer of the magnetic bearing's paper, here on the rig's model, without \
      and with that acceleration. The observer of the levitated ball's paper needs the coil's flux dynamics, which the rig's \
      current loop hides; it has no place here.",
-    "The pushed loops and the table of starts come from the packaged models; the comparison of observers and the trade-off \
+    "The loops with a disturbance step and the table of starts come from the packaged models; the comparison of observers and the trade-off \
      run natively over recordings of the PID loop, with the very observers of the models. Every \
      observer of the comparison is tuned once for the same objective: the geometric mean of the velocity errors over \
-     sensor noises of 0.1, 0.3, 1 and 3 mV, masses of -20, 0 and +20 %, and two references, with a push of 1 m/s². It is \
+     sensor noises of 0.1, 0.3, 1 and 3 mV, masses of -20, 0 and +20 %, and two references, with a disturbance step of 1 m/s². It is \
      scored on other seeds.",
 ];
 
@@ -34,41 +34,41 @@ pub fn run(packages: &Path, progress: Progress<'_>) -> Result<Findings, StudyErr
     let lines = peaking::trade_off();
     let starts = peaking::starts(&packages)?;
     progress(0.2, "rig-observers: tuning all observers");
-    let contenders = contenders()?;
+    let candidates = candidates()?;
     progress(0.9, "rig-observers: comparing them");
-    let scores = scores(&contenders);
+    let scores = scores(&candidates);
     Ok(Findings {
         name: "rig-observers",
         title: "Maglev rig: which observer, and what for",
         provenance: PROVENANCE,
         figures: vec![force_step::figure(&outcomes), peaking::figure(&lines)],
         claims: claims::all(&outcomes),
-        advice: vec![advice(&contenders, &scores)],
-        summaries: vec![force_step::table(&outcomes), comparison(&contenders, &scores), starts],
+        advice: vec![advice(&candidates, &scores)],
+        summaries: vec![force_step::table(&outcomes), comparison(&candidates, &scores), starts],
     })
 }
 
 /// Velocity errors of all observers.
-fn comparison(contenders: &[Contender], scores: &[Vec<f64>]) -> Summary {
+fn comparison(candidates: &[ObserverCandidate], scores: &[Vec<f64>]) -> Summary {
     let headers =
         ["observer", "tuning"].map(str::to_owned).into_iter().chain(TESTS.iter().map(|test| test.name()));
-    let rows = contenders.iter().enumerate().map(|(who, contender)| {
+    let rows = candidates.iter().enumerate().map(|(who, candidate)| {
         let cells = scores.iter().map(|row| {
             if row[who].is_finite() { format!("{:.3} mm/s", 1e3 * row[who]) } else { "diverges".to_owned() }
         });
-        [contender.name.to_owned(), contender.tuning.clone()].into_iter().chain(cells).collect()
+        [candidate.name.to_owned(), candidate.tuning.clone()].into_iter().chain(cells).collect()
     });
     Summary::new(
-        "rms velocity error under the PID: sine and step of the reference, push of 1 m/s²",
+        "rms velocity error under the PID: sine and step of the reference, disturbance step of 1 m/s²",
         headers,
         rows,
     )
 }
 
 /// The best observer per condition.
-fn advice(contenders: &[Contender], scores: &[Vec<f64>]) -> String {
+fn advice(candidates: &[ObserverCandidate], scores: &[Vec<f64>]) -> String {
     let best = |row: &[f64]| {
-        (0..row.len()).min_by(|a, b| row[*a].total_cmp(&row[*b])).map_or("none", |who| contenders[who].name)
+        (0..row.len()).min_by(|a, b| row[*a].total_cmp(&row[*b])).map_or("none", |who| candidates[who].name)
     };
     let choices: Vec<String> =
         TESTS.iter().zip(scores).map(|(test, row)| format!("{}: {}", test.name(), best(row))).collect();

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::contenders::velocity_error;
+use super::candidates::velocity_error;
 use crate::chart::Panel;
 use crate::host::Value;
 use crate::observer::extended_state::{ExtendedState, gains_from_bandwidth};
@@ -58,7 +58,7 @@ const FAMILIES: [Family; 4] = [
 pub fn trade_off() -> Vec<Line> {
     let noisy = Recording::make(&Conditions {
         noise: NOISE,
-        push: (1.0, 2.5),
+        disturbance_step: (1.0, 2.5),
         ..Conditions::new(Reference::SineAndStep, 4.0)
     });
     FAMILIES

@@ -1,5 +1,5 @@
 //! An objective for the work an observer is for: velocity under sensor noise, with a ball that is not quite as heavy as
-//! thought, while the reference moves and a force pushes.
+//! thought, while the reference moves and a force steps.
 //!
 //! ```text
 //! E = geometric mean over all runs of rms (x' - z2 / k2)        [m/s]
@@ -26,7 +26,7 @@ const DURATION: f64 = 3.0;
 /// First sample that counts: a ball of another mass does not start at rest.
 const SCORED_FROM: usize = 500;
 /// 1 m/s2 from 1 s on.
-const PUSH: (f64, f64) = (1.0, 1.0);
+const DISTURBANCE_STEP: (f64, f64) = (1.0, 1.0);
 
 /// All runs.
 pub struct NoiseAware {
@@ -45,7 +45,7 @@ impl NoiseAware {
                         mass_ratio,
                         noise,
                         seed,
-                        push: PUSH,
+                        disturbance_step: DISTURBANCE_STEP,
                         ..Conditions::new(reference, DURATION)
                     }));
                 }

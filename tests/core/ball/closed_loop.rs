@@ -1,9 +1,9 @@
 //! Levitated ball and controller in a loop: accuracy of every estimator, the closed forms of speed observer and frozen offset,
 //! and what the observer does when it is misled.
 
+use maglev_fmu::model::{LevitatedBallController, Model, ModelError, NullLogSink};
 use maglev_fmu::plant::levitated_ball::LevitatedBall;
 use maglev_fmu::signal::BallReference::{self, Constant, Sinusoids, Steps};
-use maglev_fmu::model::{LevitatedBallController, Silence, Model, ModelError};
 use maglev_fmu_test::values::{get, set};
 use proptest::prelude::*;
 
@@ -216,7 +216,7 @@ proptest! {
             set(&mut controller, "current", current);
             set(&mut controller, "reference", reference);
             set(&mut controller, "voltage_applied", voltage);
-            controller.advance(sample_time, &mut Silence).unwrap();
+            controller.advance(sample_time, &mut NullLogSink).unwrap();
             prop_assert!(controller.values().iter().all(|value| value.is_finite()), "{:?}", controller.values());
         }
     }
@@ -233,7 +233,7 @@ fn the_observer_starts_again_after_nonsense() {
     set(&mut controller, "current", current);
     let mut tick = |voltage: f64| {
         set(&mut controller, "voltage_applied", voltage);
-        controller.advance(1e-4, &mut Silence).unwrap();
+        controller.advance(1e-4, &mut NullLogSink).unwrap();
         get(&controller, "estimate.position")
     };
     tick(0.0);

@@ -3,7 +3,7 @@
 //! that the two differ in nothing but the hold.
 
 use maglev_fmu::controller::ball_feedback_linearisation::BallFeedbackLinearisation;
-use maglev_fmu::observer::flux_mixing::{FluxMixing, MixingSettings};
+use maglev_fmu::observer::drem::{Drem, MixingSettings};
 use maglev_fmu::observer::flux_regression::{FluxRegression, FluxRegressionSettings, Sample};
 use maglev_fmu::plant::end_stops::Contact;
 use maglev_fmu::plant::levitated_ball::{Drive, LevitatedBall, State};
@@ -41,7 +41,7 @@ fn run(hold: Hold, sample_time: f64) -> Option<(f64, f64)> {
     let mut reference = BallReferenceFilter::new(0.0);
     let mut current = ball.current(0.0, flux) / unit_current;
     let mut regression = FluxRegression::new(Sample { flux: 1.0 - OFFSET, current });
-    let mut mixing = FluxMixing::at_rest(regression.coefficients(&regression_settings));
+    let mut mixing = Drem::at_rest(regression.coefficients(&regression_settings));
     let (mut offset, mut velocity, mut gap) = (0.0, 0.0, current / (1.0 - OFFSET));
     let (mut squares, mut flux_squares, mut samples) = (0.0, 0.0, 0.0);
     for tick in 0..(4.0 / sample_time).round() as u32 {
@@ -76,7 +76,7 @@ fn run(hold: Hold, sample_time: f64) -> Option<(f64, f64)> {
         let coefficients = regression.coefficients(&regression_settings);
         let integrated_velocity = velocity + MECHANICAL_RATE * current * estimated_flux;
         if time < 0.1 {
-            mixing = FluxMixing::at_rest(coefficients);
+            mixing = Drem::at_rest(coefficients);
         } else {
             mixing.advance(&filters, coefficients);
             offset = mixing.mix().improve(&MIXING, offset, sample_time);

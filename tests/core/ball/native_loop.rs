@@ -2,10 +2,10 @@
 
 use std::ops::{Deref, DerefMut};
 
+use maglev_fmu::model::system::BALL;
+use maglev_fmu::model::{ClosedLoop, NullLogSink};
 use maglev_fmu::plant::levitated_ball::LevitatedBall;
 use maglev_fmu::signal::BallReference;
-use maglev_fmu::model::system::BALL;
-use maglev_fmu::model::{ClosedLoop, Silence};
 use maglev_fmu_test::closed_loop::closed_loop;
 use maglev_fmu_test::values::{get, reference, set};
 
@@ -90,7 +90,7 @@ impl BallLoop {
 
     fn move_plant(&mut self) {
         let duration = self.step_size;
-        self.plant.advance(duration, &mut Silence).unwrap();
+        self.plant.advance(duration, &mut NullLogSink).unwrap();
         self.ticks += 1;
     }
 

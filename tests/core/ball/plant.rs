@@ -1,8 +1,8 @@
 //! The levitated ball's plant against closed forms, an energy balance and another integrator.
 
+use maglev_fmu::model::{LevitatedBallPlant, Model, ModelError, NullLogSink};
 use maglev_fmu::plant::end_stops::Contact;
 use maglev_fmu::plant::levitated_ball::{Drive, LevitatedBall, State};
-use maglev_fmu::model::{LevitatedBallPlant, Silence, Model, ModelError};
 use maglev_fmu_test::values::{get, set};
 use proptest::prelude::*;
 
@@ -194,7 +194,7 @@ proptest! {
             set(&mut plant, "voltage", voltage);
             set(&mut plant, "force", force.clamp(-1e6, 1e6));
             let before = plant.values().to_vec();
-            if plant.advance(duration, &mut Silence).is_err() {
+            if plant.advance(duration, &mut NullLogSink).is_err() {
                 prop_assert_eq!(plant.values(), &before[..]);
             }
             prop_assert!(plant.values().iter().all(|value| value.is_finite()));
@@ -211,7 +211,7 @@ fn sensor_noise_has_its_deviation_and_repeats() {
         set(&mut plant, "sensor.seed", seed);
         plant.initialise(0.0).unwrap();
         let reading = |_| {
-            plant.advance(1e-6, &mut Silence).unwrap();
+            plant.advance(1e-6, &mut NullLogSink).unwrap();
             get(&plant, "current_measured") - get(&plant, "current")
         };
         (0..4000).map(reading).collect()
@@ -227,7 +227,7 @@ fn sensor_noise_has_its_deviation_and_repeats() {
 fn an_endless_step_is_refused_with_its_limit() {
     let mut plant = LevitatedBallPlant::new();
     plant.initialise(0.0).unwrap();
-    let refused = plant.advance(1e9, &mut Silence).unwrap_err();
+    let refused = plant.advance(1e9, &mut NullLogSink).unwrap_err();
     assert!(matches!(refused, ModelError::StepTooLong { duration: 1e9, .. }), "{refused}");
     assert_eq!(get(&plant, "time"), 0.0);
 }
@@ -236,11 +236,11 @@ fn an_endless_step_is_refused_with_its_limit() {
 fn contact_shows_and_ends() {
     let mut plant = LevitatedBallPlant::new();
     plant.initialise(0.0).unwrap();
-    plant.advance(0.5, &mut Silence).unwrap();
+    plant.advance(0.5, &mut NullLogSink).unwrap();
     assert_eq!((get(&plant, "position"), get(&plant, "contact")), (LOWER_STOP, 1.0));
     assert_eq!((get(&plant, "velocity"), get(&plant, "acceleration")), (0.0, 0.0));
     set(&mut plant, "force", 1.0);
-    plant.advance(1e-3, &mut Silence).unwrap();
+    plant.advance(1e-3, &mut NullLogSink).unwrap();
     assert_eq!(get(&plant, "contact"), 0.0);
     assert!(get(&plant, "position") > LOWER_STOP);
 }

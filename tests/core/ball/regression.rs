@@ -1,6 +1,6 @@
 //! The flux regression, its mixing and the filters on a motion that is known exactly.
 
-use maglev_fmu::observer::flux_mixing::{FluxMixing, MixingSettings};
+use maglev_fmu::observer::drem::{Drem, MixingSettings};
 use maglev_fmu::observer::flux_regression::{
     FluxRegression, FluxRegressionSettings, Sample, residual_and_slope,
 };
@@ -35,18 +35,18 @@ fn motion(amplitude: f64, time: f64) -> Sample {
 }
 
 /// Regression and mixing over `duration` [s] of the motion; `seen` gets time, regression and mixing after each sample.
-fn run(amplitude: f64, step: f64, duration: f64, mut seen: impl FnMut(f64, &FluxRegression, &FluxMixing)) {
+fn run(amplitude: f64, step: f64, duration: f64, mut seen: impl FnMut(f64, &FluxRegression, &Drem)) {
     let settings = settings();
     let prefilters = RATES.map(|rate| FirstOrderHold::low_pass(rate, step));
     let filters = FILTERS.map(|rate| FirstOrderHold::low_pass(rate, step));
     let mut regression = FluxRegression::new(motion(amplitude, 0.0));
-    let mut mixing = FluxMixing::at_rest(regression.coefficients(&settings));
+    let mut mixing = Drem::at_rest(regression.coefficients(&settings));
     for sample in 1..=(duration / step).round() as u32 {
         let time = step * f64::from(sample);
         regression.advance(&prefilters, motion(amplitude, time));
         let coefficients = regression.coefficients(&settings);
         if time < 0.2 {
-            mixing = FluxMixing::at_rest(coefficients);
+            mixing = Drem::at_rest(coefficients);
         } else {
             mixing.advance(&filters, coefficients);
         }
@@ -149,14 +149,14 @@ fn a_ball_at_rest_excites_nothing_and_balances_forces() {
             assert!((slope - (5.0 * flux.powi(4) - 3.0 * flux.powi(2))).abs() < 1e-12, "{slope}");
         }
         assert!(limited_error(&coefficients, offset).abs() < 1e-15);
-        assert_eq!(FluxMixing::at_rest(coefficients).mix().excitation, 0.0);
+        assert_eq!(Drem::at_rest(coefficients).mix().excitation, 0.0);
     }
 }
 
 /// Four rows of coefficients that are all straight jumps: the mixing is Cramer's rule.
-fn jumped(rows: &[[f64; 5]; 4]) -> (FluxMixing, Matrix4<f64>, Vector4<f64>) {
+fn jumped(rows: &[[f64; 5]; 4]) -> (Drem, Matrix4<f64>, Vector4<f64>) {
     let holds = FILTERS.map(|rate| FirstOrderHold::low_pass(rate, 1e-2));
-    let mut mixing = FluxMixing::at_rest([0.0; 5]);
+    let mut mixing = Drem::at_rest([0.0; 5]);
     rows.iter().for_each(|row| mixing.advance(&holds, *row));
     let filtered = mixing.filtered();
     let matrix = Matrix4::from_fn(|j, q| filtered[j][q + 1]);
@@ -179,7 +179,7 @@ proptest! {
     #[test]
     fn gradient_composes(excitation in -50.0..50.0f64, theta in -1.0..1.0f64, estimate in -1.0..1.0f64) {
         let settings = MixingSettings { gain: 10.0, excitation_scale: 1.0 };
-        let equation = maglev_fmu::observer::flux_mixing::MixedEquation { excitation, right_side: excitation * theta };
+        let equation = maglev_fmu::observer::drem::MixedEquation { excitation, right_side: excitation * theta };
         let whole = equation.improve(&settings, estimate, 2e-3);
         let half = equation.improve(&settings, estimate, 1e-3);
         let halves = equation.improve(&settings, half, 1e-3);

@@ -4,7 +4,7 @@
 use maglev_fmu::observer::ball_observer::{
     BallEstimate, BallObserver, BallObserverSettings, FluxEstimator, InitialBallEstimate,
 };
-use maglev_fmu::observer::flux_mixing::{FluxMixing, MixingSettings};
+use maglev_fmu::observer::drem::{Drem, MixingSettings};
 use maglev_fmu::observer::flux_regression::{FluxRegression, FluxRegressionSettings, Sample};
 use maglev_fmu::plant::levitated_ball::LevitatedBall;
 use maglev_fmu::signal::FirstOrderHold;
@@ -36,7 +36,7 @@ fn sampled(settings: &Settings, rows: &[Row], sample_time: f64) -> Vec<[f64; 7]>
     let mut sample =
         Sample { flux: rows[0].integral / flux_unit, current: ball.normalised_current(rows[0].current) };
     let mut regression = FluxRegression::new(sample);
-    let mut mixing = FluxMixing::at_rest(regression.coefficients(&rates));
+    let mut mixing = Drem::at_rest(regression.coefficients(&rates));
     let mut result = Vec::new();
     for (k, row) in rows.iter().enumerate() {
         if k > 0 {
@@ -47,7 +47,7 @@ fn sampled(settings: &Settings, rows: &[Row], sample_time: f64) -> Vec<[f64; 7]>
             regression.advance(&prefilters, sample);
             mixing.advance(&filters, regression.coefficients(&rates));
             if row.time < settings.hold + 1e-9 {
-                mixing = FluxMixing::at_rest(regression.coefficients(&rates));
+                mixing = Drem::at_rest(regression.coefficients(&rates));
             }
         }
         let [c0, c1, c2, c3, c4] = regression.coefficients(&rates);

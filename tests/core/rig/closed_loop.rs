@@ -1,9 +1,9 @@
 //! Closed loops of the maglev rig: poles against their closed forms, PID against the loop through the extended state,
 //! and what goes wrong cleanly.
 
+use maglev_fmu::model::{ClosedLoop, NullLogSink, system};
 use maglev_fmu::observer::extended_state::{ExtendedState, gains_from_bandwidth};
 use maglev_fmu::observer::extended_state_exact::ExactPredictor;
-use maglev_fmu::model::{ClosedLoop, Silence, system};
 use maglev_fmu_test::closed_loop::closed_loop;
 use maglev_fmu_test::rig::{
     APPLIED, CURRENT, DISTURBANCE_REJECTION, EULER, METRES, NONLINEAR, THROUGH_EXTENDED_STATE,
@@ -287,7 +287,7 @@ fn law_may_change_while_the_ball_floats() {
     let mut rig = closed_loop(&system::RIG, &[], &THROUGH_EXTENDED_STATE);
     for law in [DISTURBANCE_REJECTION, 1.0, DISTURBANCE_REJECTION, 1.0] {
         set(&mut *rig.controller, "controller.kind", law);
-        rig.controller.adopt_parameters();
+        rig.controller.apply_tunable_parameters();
         assert!(!run_finitely(&mut rig, 0.5, "change of law"));
     }
     assert!((get(&*rig.plant, "position") - SET_POINT).abs() < 1e-5);
@@ -334,7 +334,7 @@ fn applied_voltage_makes_the_observer_right_when_both_models_step_at_once() {
                 largest = largest.max((expected.velocity - z[1]).abs());
             }
             set(&mut *rig.plant, "voltage", voltage);
-            rig.plant.advance(T, &mut Silence).unwrap();
+            rig.plant.advance(T, &mut NullLogSink).unwrap();
             let state = ExtendedState { position: z[0], velocity: z[1], extended: z[2] };
             before = Some((state, measured, voltage));
         }

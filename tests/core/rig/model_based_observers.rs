@@ -1,9 +1,9 @@
 //! The rig's observers that know a model, Kalman filter and windowed Newton, through the models: what they estimate, what
 //! they bear, and the loop through their extended state.
 
-use maglev_fmu::plant::maglev_rig::MaglevRig;
-use maglev_fmu::model::Silence;
+use maglev_fmu::model::NullLogSink;
 use maglev_fmu::model::system;
+use maglev_fmu::plant::maglev_rig::MaglevRig;
 use maglev_fmu_test::closed_loop::closed_loop;
 use maglev_fmu_test::rig::{APPLIED, KALMAN, METRES, THROUGH_EXTENDED_STATE, WINDOWED_NEWTON, ZERO};
 use maglev_fmu_test::values::{get, set};
@@ -191,7 +191,7 @@ fn wrong_readings_are_forgotten() {
                 let (seen, held) = (SENSOR.voltage(SET_POINT), RIG.operating_voltage(SET_POINT));
                 set(&mut *rig.controller, "sensor_voltage", if is_wrong { reading } else { seen });
                 set(&mut *rig.controller, "voltage", held);
-                rig.controller.advance(T, &mut Silence).unwrap();
+                rig.controller.advance(T, &mut NullLogSink).unwrap();
             }
             let off = get(&*rig.controller, "estimate.si.position") - SET_POINT;
             let velocity = get(&*rig.controller, "estimate.si.velocity");
@@ -219,7 +219,7 @@ fn a_ball_that_lay_on_its_stop_is_held_again() {
                 if k == 500 {
                     assert_eq!(get(&*rig.plant, "contact"), 1.0, "the ball has fallen");
                     set(&mut *rig.controller, "controller.voltage_max", 5.0);
-                    rig.controller.adopt_parameters();
+                    rig.controller.apply_tunable_parameters();
                 }
                 rig.step().unwrap();
             }
@@ -240,7 +240,7 @@ fn impossible_readings_are_counted_as_restarts() {
         assert_eq!(get(&*rig.controller, "observer.restarts"), 0.0);
         for reading in [-1e6, 1e6, -1e6] {
             set(&mut *rig.controller, "sensor_voltage", reading);
-            (0..50).for_each(|_| rig.controller.advance(T, &mut Silence).unwrap());
+            (0..50).for_each(|_| rig.controller.advance(T, &mut NullLogSink).unwrap());
             assert!(rig.controller.values().iter().all(|value| value.is_finite()));
         }
         assert!(get(&*rig.controller, "observer.restarts") >= 1.0, "kind {kind}");
@@ -264,7 +264,7 @@ fn tunable_parameters_reach_the_running_observer() {
             (0..200).for_each(|_| rig.step().unwrap());
             if change {
                 set(&mut *rig.controller, name, value);
-                rig.controller.adopt_parameters();
+                rig.controller.apply_tunable_parameters();
             }
             let before = get(&*rig.controller, "estimate.velocity");
             (0..20).for_each(|_| rig.step().unwrap());
@@ -300,7 +300,7 @@ fn applied_voltage_is_what_the_model_is_told() {
                     errors.push(velocity - get(&*rig.controller, "estimate.si.velocity"));
                 }
                 set(&mut *rig.plant, "voltage", voltage);
-                rig.plant.advance(T, &mut Silence).unwrap();
+                rig.plant.advance(T, &mut NullLogSink).unwrap();
             }
             root_mean_square(errors.into_iter())
         });

@@ -1,6 +1,6 @@
 //! The rig's plant model: driver, sensor, stops, and what does not depend on the communication step.
 
-use maglev_fmu::model::{MaglevRigPlant, Silence, Model, ModelError};
+use maglev_fmu::model::{MaglevRigPlant, Model, ModelError, NullLogSink};
 use maglev_fmu_test::values::{get, set};
 use proptest::prelude::*;
 
@@ -14,7 +14,7 @@ fn plant(values: &[(&str, f64)]) -> MaglevRigPlant {
 }
 
 fn advance(plant: &mut MaglevRigPlant, duration: f64) {
-    plant.advance(duration, &mut Silence).unwrap();
+    plant.advance(duration, &mut NullLogSink).unwrap();
 }
 
 #[test]
@@ -75,15 +75,18 @@ fn sensor_has_noise_resolution_and_a_range() {
 fn a_step_of_hours_is_refused_and_changes_nothing() {
     let mut plant = plant(&[]);
     let before = plant.values().to_vec();
-    let refused = plant.advance(1e5, &mut Silence).unwrap_err();
+    let refused = plant.advance(1e5, &mut NullLogSink).unwrap_err();
     let ModelError::StepTooLong { limit, .. } = refused else { panic!("{refused}") };
     let said = format!("a step of 100000 s: expected at most {limit} s, about a second of computing");
     assert!(refused.to_string().starts_with(&said), "{refused}");
     assert_eq!(plant.values(), before);
     // Sensor and integrator share the second.
     let mut read = self::plant(&[("sensor.sample_time", 1e-6)]);
-    let refused = read.advance(1e5, &mut Silence).unwrap_err();
-    assert!(matches!(refused, ModelError::StepTooLong { limit: shorter, .. } if shorter < limit), "{refused}");
+    let refused = read.advance(1e5, &mut NullLogSink).unwrap_err();
+    assert!(
+        matches!(refused, ModelError::StepTooLong { limit: shorter, .. } if shorter < limit),
+        "{refused}"
+    );
 }
 
 proptest! {

@@ -1,11 +1,11 @@
 //! The maglev rig against a trajectory of an independent prototype: PID loop, sine and step of the reference, three
 //! observers.
 
+use maglev_fmu::model::system::RIG;
 use maglev_fmu::observer::extended_state::{
     ExtendedState, ExtendedStateModel, LinearInjection, gains_from_bandwidth,
 };
 use maglev_fmu::observer::extended_state_exact::ExactPredictor;
-use maglev_fmu::model::system::RIG;
 use maglev_fmu_test::closed_loop::closed_loop;
 use maglev_fmu_test::rig::{CURRENT, MATCHED, METRES, NONLINEAR, RUNGE_KUTTA, ZERO};
 use maglev_fmu_test::values::{get, set};

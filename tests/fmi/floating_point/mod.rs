@@ -231,7 +231,9 @@ fn derivatives_are_the_same_in_every_host() {
     for (standard, plant) in plants() {
         for_random_lives(
             |model| model == plant,
-            |model, script| assert_same_everywhere(|| Component::exchanged(standard, model), script, integrate),
+            |model, script| {
+                assert_same_everywhere(|| Component::exchanged(standard, model), script, integrate)
+            },
         );
     }
 }

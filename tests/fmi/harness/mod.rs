@@ -110,7 +110,12 @@ impl Component {
     }
 
     /// Around an instance that was made elsewhere.
-    pub fn from_handle(standard: Standard, model: &str, handle: *mut c_void, recorder: Box<Recorder>) -> Self {
+    pub fn from_handle(
+        standard: Standard,
+        model: &str,
+        handle: *mut c_void,
+        recorder: Box<Recorder>,
+    ) -> Self {
         Self { standard, description: description(model), handle, recorder }
     }
 

@@ -4,8 +4,8 @@
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-use maglev_fmu::package::{Form, model_description};
 use maglev_fmu::model::{ADDED_MODELS, StartValues};
+use maglev_fmu::package::{Form, model_description};
 use roxmltree::{Document, Node};
 
 use super::super::harness::Standard;

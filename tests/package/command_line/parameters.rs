@@ -4,9 +4,9 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use maglev_fmu::parameter_file::ParameterFile;
 use maglev_fmu::model::ModelType;
 use maglev_fmu::model::system::System;
+use maglev_fmu::parameter_file::ParameterFile;
 use object::Architecture;
 use serde_json::json;
 

@@ -14,7 +14,8 @@ pub fn get(model: &dyn Model, name: &str) -> f64 {
 
 /// Sets the variable called `name`, after the check that the C boundary makes, too.
 pub fn set(model: &mut dyn Model, name: &str, value: f64) {
-    let (reference, variable) = model.description().find(name).unwrap_or_else(|| panic!("no variable {name}"));
+    let (reference, variable) =
+        model.description().find(name).unwrap_or_else(|| panic!("no variable {name}"));
     variable.check(value).unwrap();
     model.values_mut()[reference] = value;
 }

@@ -10,7 +10,7 @@ use maglev_fmu::model::quantity::{self, DURATION, Enumeration, POSITION_GAIN, VE
 use maglev_fmu::model::sampled_controller::{ObserverAndLaw, Sample, SampledController};
 use maglev_fmu::model::start_delay::start_delay;
 use maglev_fmu::model::variable::{Kind, Variability, Variable, variable_table};
-use maglev_fmu::model::{Description, Journal};
+use maglev_fmu::model::{Description, LogSink};
 use serde::{Deserialize, Serialize};
 
 use super::{
@@ -98,7 +98,7 @@ impl ObserverAndLaw<COUNT> for DerivativeAndLaw {
         values[ESTIMATE_VELOCITY] = 0.0;
     }
 
-    fn tick(&mut self, values: &mut [f64; COUNT], sample: Sample, _: &mut dyn Journal) {
+    fn tick(&mut self, values: &mut [f64; COUNT], sample: Sample, _: &mut dyn LogSink) {
         let (position, sample_time) = (values[MEASURED], values[SAMPLE_TIME]);
         if !sample.is_first {
             let share = libm::exp(-sample_time / values[FILTER_TIME]);

@@ -10,7 +10,7 @@ use linkme::distributed_slice;
 use maglev_fmu::model::quantity::Quantity;
 use maglev_fmu::model::system::{System, USE_APPLIED_VOLTAGE};
 use maglev_fmu::model::unit_of_measure::{KILOGRAM, METRE, METRE_PER_SECOND, NEWTON_PER_VOLT, VOLT};
-use maglev_fmu::model::{ADDED_SYSTEMS, ADDED_MODELS, Registration, ModelType};
+use maglev_fmu::model::{ADDED_MODELS, ADDED_SYSTEMS, ModelType, Registration};
 
 static PLANT: ModelType = ModelType::of::<plant::CartPlant>(&plant::DESCRIPTION);
 

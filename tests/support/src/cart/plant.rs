@@ -1,7 +1,5 @@
 //! The cart: m x'' = k u - d x', with the voltage u of its motor, and a sensor of the position x.
 
-use maglev_fmu::plant::runge_kutta;
-use maglev_fmu::scalar::Scalar;
 use maglev_fmu::model::continuous_plant::{ContinuousPlant, Motion, PlantEquations};
 use maglev_fmu::model::quantity::Quantity;
 use maglev_fmu::model::sensor::{SensorVariables, sensor_variables};
@@ -9,6 +7,8 @@ use maglev_fmu::model::unit_of_measure::{METRE_PER_SECOND_SQUARED, NEWTON_SECOND
 use maglev_fmu::model::variable::{Kind, Variability, Variable, variable_table};
 use maglev_fmu::model::work::Load;
 use maglev_fmu::model::{Description, quantity};
+use maglev_fmu::plant::runge_kutta;
+use maglev_fmu::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
 use super::{

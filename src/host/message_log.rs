@@ -22,11 +22,11 @@ pub struct LogMessage {
 ///
 /// The lock is there because careless models log from threads of their own.
 #[derive(Debug, Default)]
-pub(super) struct Journal {
+pub(super) struct MessageLog {
     messages: Mutex<VecDeque<LogMessage>>,
 }
 
-impl Journal {
+impl MessageLog {
     pub(super) fn messages(&self) -> Vec<LogMessage> {
         self.lock().iter().cloned().collect()
     }
@@ -43,9 +43,9 @@ impl Journal {
     /// Appends a message that came through a C callback; never unwinds.
     ///
     /// # Safety
-    /// `journal` is NULL or points to a living journal; `category` and `text` are NULL or C strings.
+    /// `message_log` is NULL or points to a living message_log; `category` and `text` are NULL or C strings.
     pub(super) unsafe fn append(
-        journal: *const Self,
+        message_log: *const Self,
         status: i32,
         category: *const c_char,
         text: *const c_char,
@@ -53,8 +53,8 @@ impl Journal {
     ) {
         // Nobody below this frame could handle a panic: losing a message is the lesser evil.
         let _ = catch_unwind(AssertUnwindSafe(|| {
-            // SAFETY: the caller passes NULL or a living journal.
-            let Some(journal) = (unsafe { journal.as_ref() }) else { return };
+            // SAFETY: the caller passes NULL or a living message_log.
+            let Some(message_log) = (unsafe { message_log.as_ref() }) else { return };
             let message = LogMessage {
                 status: ReportedStatus(status),
                 // SAFETY: the caller passes NULL or C strings.
@@ -62,7 +62,7 @@ impl Journal {
                 // SAFETY: as above.
                 text: polish(unsafe { text_of(text) }),
             };
-            let mut messages = journal.lock();
+            let mut messages = message_log.lock();
             if messages.len() == CAPACITY {
                 messages.pop_front();
             }
@@ -93,16 +93,16 @@ mod tests {
 
     #[test]
     fn keeps_the_newest_messages_and_survives_null() {
-        let journal = Journal::default();
+        let message_log = MessageLog::default();
         for number in 0..CAPACITY + 2 {
             let text = std::ffi::CString::new(format!("{number}")).unwrap();
-            // SAFETY: a living journal, NULL and a C string.
-            unsafe { Journal::append(&journal, 1, std::ptr::null(), text.as_ptr(), |text| text) };
+            // SAFETY: a living message_log, NULL and a C string.
+            unsafe { MessageLog::append(&message_log, 1, std::ptr::null(), text.as_ptr(), |text| text) };
         }
         // SAFETY: all NULL.
-        unsafe { Journal::append(std::ptr::null(), 1, std::ptr::null(), std::ptr::null(), |text| text) };
-        let messages = journal.messages();
+        unsafe { MessageLog::append(std::ptr::null(), 1, std::ptr::null(), std::ptr::null(), |text| text) };
+        let messages = message_log.messages();
         assert_eq!((messages.len(), messages[0].text.as_str()), (CAPACITY, "2"));
-        assert_eq!(journal.last_text(), Some((CAPACITY + 1).to_string()));
+        assert_eq!(message_log.last_text(), Some((CAPACITY + 1).to_string()));
     }
 }

@@ -8,42 +8,42 @@ use crate::study::metrics::root_mean_square;
 use crate::study::run::Run;
 
 /// An observer with its parameters of the controller model.
-pub struct Contender {
+pub struct ObserverCandidate {
     pub name: &'static str,
     pub parameters: &'static [Parameter<'static>],
     /// Whether the filter is told the sensor's noise.
     pub knows_noise: bool,
 }
 
-const fn contender(name: &'static str, parameters: &'static [Parameter<'static>]) -> Contender {
-    Contender { name, parameters, knows_noise: false }
+const fn candidate(name: &'static str, parameters: &'static [Parameter<'static>]) -> ObserverCandidate {
+    ObserverCandidate { name, parameters, knows_noise: false }
 }
 
-pub const CONTENDERS: [Contender; 8] = [
-    contender("Newton, printed model", &[]),
-    contender("Newton, exact model", &[("observer.map", Value::Text("exact"))]),
-    contender(
+pub const CANDIDATES: [ObserverCandidate; 8] = [
+    candidate("Newton, printed model", &[]),
+    candidate("Newton, exact model", &[("observer.map", Value::Text("exact"))]),
+    candidate(
         "Newton, 10 samples",
         &[("observer.map", Value::Text("exact")), ("observer.window", Value::Integer(10))],
     ),
-    contender(
+    candidate(
         "Newton, 30 samples",
         &[("observer.map", Value::Text("exact")), ("observer.window", Value::Integer(30))],
     ),
-    contender("reduced Newton, printed", &[("observer.kind", Value::Text("reduced_newton"))]),
-    contender(
+    candidate("reduced Newton, printed", &[("observer.kind", Value::Text("reduced_newton"))]),
+    candidate(
         "reduced Newton, compensated",
         &[
             ("observer.map", Value::Text("exact")),
             ("observer.kind", Value::Text("reduced_newton_compensated")),
         ],
     ),
-    Contender {
+    ObserverCandidate {
         name: "Kalman, no process noise",
         parameters: &[("observer.kind", Value::Text("kalman")), ("observer.flux_noise", Value::Real(0.0))],
         knows_noise: true,
     },
-    Contender {
+    ObserverCandidate {
         name: "Kalman, default noise",
         parameters: &[("observer.kind", Value::Text("kalman"))],
         knows_noise: false,
@@ -94,7 +94,7 @@ pub fn simulate(
     )
 }
 
-impl Contender {
+impl ObserverCandidate {
     /// Parameters of this observer under some sensor noise \[m\].
     pub fn parameters(&self, noise: f64) -> Vec<Parameter<'static>> {
         let mut parameters = self.parameters.to_vec();

@@ -12,13 +12,13 @@ use serde::{Deserialize, Serialize};
 
 /// fal with its parameters; de^(al - 1) is computed once.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct HanFunction {
+pub struct Fal {
     exponent: f64,
     linear_zone: f64,
     slope: f64,
 }
 
-impl HanFunction {
+impl Fal {
     /// `exponent` is al, above 0, usually at most 1; `linear_zone` is de, above 0, in the error's unit.
     pub fn new(exponent: f64, linear_zone: f64) -> Self {
         let slope = power(linear_zone, libm::log(linear_zone), exponent) / linear_zone;
@@ -40,9 +40,9 @@ impl HanFunction {
 
 /// Several such functions of one error, which share its logarithm.
 #[inline]
-pub fn values<const N: usize>(functions: &[HanFunction; N], error: f64) -> [f64; N] {
+pub fn values<const N: usize>(functions: &[Fal; N], error: f64) -> [f64; N] {
     let magnitude = error.abs();
-    let is_linear = |function: &HanFunction| magnitude <= function.linear_zone || function.exponent == 1.0;
+    let is_linear = |function: &Fal| magnitude <= function.linear_zone || function.exponent == 1.0;
     if functions.iter().all(is_linear) {
         return core::array::from_fn(|index| functions[index].slope * error);
     }
@@ -94,7 +94,7 @@ mod tests {
             error in -10.0..10.0f64, linear_zone in 1e-4..1.2f64,
             exponent in prop_oneof![0.05..1.0f64, Just(1.0), Just(0.5), Just(0.25)],
         ) {
-            let value = HanFunction::new(exponent, linear_zone).value(error);
+            let value = Fal::new(exponent, linear_zone).value(error);
             let defined = if error.abs() <= linear_zone {
                 error / libm::pow(linear_zone, 1.0 - exponent)
             } else {
@@ -114,7 +114,7 @@ mod tests {
 
         #[test]
         fn function_is_continuous_and_odd(linear_zone in 1e-4..1.2f64, exponent in 0.05..1.0f64) {
-            let function = HanFunction::new(exponent, linear_zone);
+            let function = Fal::new(exponent, linear_zone);
             let (inside, outside) = (function.value(linear_zone), function.value(linear_zone * (1.0 + 1e-15)));
             prop_assert!((inside - outside).abs() < 1e-14 * inside);
             for error in [0.5 * linear_zone, 2.0 * linear_zone] {
@@ -125,7 +125,7 @@ mod tests {
 
     #[test]
     fn exponent_one_is_linear_everywhere() {
-        let function = HanFunction::new(1.0, 0.01);
+        let function = Fal::new(1.0, 0.01);
         assert_eq!(function.slope(), 1.0);
         for error in [-3.0, 0.0, 1e-3, 0.5] {
             assert_eq!(function.value(error), error);

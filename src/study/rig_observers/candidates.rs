@@ -31,7 +31,7 @@ const DURATION: f64 = 4.0;
 const SEEDS: core::ops::Range<u64> = 1001..1006;
 
 /// An observer with its parameters.
-pub struct Contender {
+pub struct ObserverCandidate {
     pub name: &'static str,
     /// What was tuned and what came out.
     pub tuning: String,
@@ -87,10 +87,10 @@ fn newton_settings(window: usize, with_disturbance: bool) -> RigEstimatorSetting
     RigEstimatorSettings::WindowedNewton(MODEL, settings)
 }
 
-/// All contenders, tuned.
-pub fn contenders() -> Result<Vec<Contender>, StudyError> {
+/// All candidates, tuned.
+pub fn candidates() -> Result<Vec<ObserverCandidate>, StudyError> {
     let data = NoiseAware::new(&NOISES);
-    let printed = |name, candidate: &Candidate, table: &str| Contender {
+    let printed = |name, candidate: &Candidate, table: &str| ObserverCandidate {
         name,
         tuning: format!("as printed in {table}"),
         parameters: RigEstimatorSettings::ExtendedState(settings(candidate)),
@@ -112,7 +112,7 @@ fn extended_state(
     space: SearchSpace,
     form: Form,
     data: &NoiseAware,
-) -> Result<Contender, StudyError> {
+) -> Result<ObserverCandidate, StudyError> {
     let observer = |candidate: &Candidate| {
         RigEstimatorSettings::ExtendedState(ExtendedStateSettings { form, ..settings(candidate) })
     };
@@ -139,7 +139,7 @@ fn extended_state(
             quantity(linear_zones[0], "V")
         ),
     };
-    Ok(Contender { name, tuning, parameters: observer(&candidate) })
+    Ok(ObserverCandidate { name, tuning, parameters: observer(&candidate) })
 }
 
 /// The best of a list of parameters.
@@ -155,21 +155,21 @@ fn best<T: Copy + Send + Sync>(
     costs.into_iter().min_by(|a, b| a.1.total_cmp(&b.1)).map(|(choice, _)| choice)
 }
 
-fn kalman(data: &NoiseAware) -> Contender {
+fn kalman(data: &NoiseAware) -> ObserverCandidate {
     let choices = (0..=20).map(|step| libm::pow(10.0, -1.0 + 0.2 * f64::from(step))).collect();
     let intensity =
         best(choices, data, |intensity| kalman_settings(intensity, ASSUMED_NOISE)).unwrap_or(10.0);
-    Contender {
+    ObserverCandidate {
         name: "Kalman with disturbance",
         tuning: format!("grid: q = {}, assumes 1 mV", quantity(intensity, "m/s2/√s")),
         parameters: kalman_settings(intensity, ASSUMED_NOISE),
     }
 }
 
-fn newton(name: &'static str, with_disturbance: bool, data: &NoiseAware) -> Contender {
+fn newton(name: &'static str, with_disturbance: bool, data: &NoiseAware) -> ObserverCandidate {
     let choices = vec![4, 6, 8, 12, 16, 20, 24, 32, 48];
     let window = best(choices, data, |window| newton_settings(window, with_disturbance)).unwrap_or(8);
-    Contender {
+    ObserverCandidate {
         name,
         tuning: format!("grid: window of {window} samples"),
         parameters: newton_settings(window, with_disturbance),
@@ -203,8 +203,8 @@ impl Test {
     }
 }
 
-/// rms velocity errors \[m/s\], `[test][contender]`; infinite where an observer diverges.
-pub fn scores(contenders: &[Contender]) -> Vec<Vec<f64>> {
+/// rms velocity errors \[m/s\], `[test][candidate]`; infinite where an observer diverges.
+pub fn scores(candidates: &[ObserverCandidate]) -> Vec<Vec<f64>> {
     TESTS
         .par_iter()
         .map(|test| {
@@ -214,17 +214,17 @@ pub fn scores(contenders: &[Contender]) -> Vec<Vec<f64>> {
                         noise: test.noise,
                         mass_ratio: test.mass_ratio,
                         seed,
-                        push: (1.0, 1.0),
+                        disturbance_step: (1.0, 1.0),
                         ..Conditions::new(Reference::SineAndStep, DURATION)
                     })
                 })
                 .collect();
-            contenders
+            candidates
                 .iter()
-                .map(|contender| {
+                .map(|candidate| {
                     let squares: Option<f64> = recordings
                         .iter()
-                        .map(|recording| error(contender.parameters, recording).map(|error| error * error))
+                        .map(|recording| error(candidate.parameters, recording).map(|error| error * error))
                         .sum();
                     squares.map_or(f64::INFINITY, |sum| libm::sqrt(sum / recordings.len() as f64))
                 })

@@ -57,13 +57,13 @@ pub fn normalised(settings: &MixingSettings, level: f64, equation: &MixedEquatio
 
 /// The twenty low-passes by which the four filters are realised: H_j\[c\] = c - b_j / (p + b_j) \[c\].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct FluxMixing {
+pub struct Drem {
     /// By filter, then by coefficient.
     low_passes: [[f64; 5]; 4],
     coefficients: [f64; 5],
 }
 
-impl FluxMixing {
+impl Drem {
     /// Filters that have seen nothing but `coefficients`, so that they put out zero.
     pub fn at_rest(coefficients: [f64; 5]) -> Self {
         Self { low_passes: [coefficients; 4], coefficients }

@@ -42,14 +42,14 @@ impl DremSetting {
 
 /// An estimator with the sample time it gets.
 #[derive(Clone, Debug)]
-pub struct Contender {
+pub struct ObserverCandidate {
     pub name: &'static str,
     /// T \[s\]
     pub sample_time: f64,
     pub parameters: Vec<Parameter<'static>>,
 }
 
-impl Contender {
+impl ObserverCandidate {
     /// DREM at the sample time it needs. kappa does not depend on the reference here: it is the same unit for both.
     pub fn drem(name: &'static str, setting: &DremSetting) -> Self {
         let DremSetting { prefilters, filters, gain, normalisation } = *setting;
@@ -84,20 +84,20 @@ pub const FROZEN: usize = 1;
 pub const NEWTON: usize = 2;
 pub const ADAPTIVE_RESISTANCE: usize = 3;
 pub const ADAPTIVE_OFFSET: usize = 4;
-pub const CONTENDERS: usize = 5;
+pub const CANDIDATES: usize = 5;
 
-/// All contenders in the order of the constants above, DREM with its best setting.
-pub fn all(tuned: &DremSetting) -> [Contender; CONTENDERS] {
+/// All candidates in the order of the constants above, DREM with its best setting.
+pub fn all(tuned: &DremSetting) -> [ObserverCandidate; CANDIDATES] {
     let adaptive = Value::Text("polynomial_newton_adaptive");
     [
-        Contender::drem("DREM, retuned", tuned),
-        Contender::drem("no adaptation", &DremSetting::FROZEN),
-        Contender::newton("Newton", &[("observer.kind", Value::Text("polynomial_newton"))]),
-        Contender::newton(
+        ObserverCandidate::drem("DREM, retuned", tuned),
+        ObserverCandidate::drem("no adaptation", &DremSetting::FROZEN),
+        ObserverCandidate::newton("Newton", &[("observer.kind", Value::Text("polynomial_newton"))]),
+        ObserverCandidate::newton(
             "adaptive Newton, resistance",
             &[("observer.kind", adaptive), ("observer.adaptation", Value::Text("resistance"))],
         ),
-        Contender::newton(
+        ObserverCandidate::newton(
             "adaptive Newton, voltage offset",
             &[("observer.kind", adaptive), ("observer.adaptation", Value::Text("voltage_offset"))],
         ),

@@ -2,7 +2,7 @@
 
 /// A plant of `N` states from sample to sample, of which the first is measured. An estimator predicts by it, corrects the
 /// prediction with the measurement, and is reset where neither makes sense any more.
-pub trait Model<const N: usize> {
+pub trait ProcessModel<const N: usize> {
     /// The state after a sample under a held `input`.
     fn predict(&self, state: &[f64; N], input: f64) -> [f64; N];
 
