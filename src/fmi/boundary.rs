@@ -24,7 +24,7 @@ pub(super) unsafe fn enter(
     function: &Function,
     body: impl FnOnce(&mut Instance) -> Result<(), CallError>,
 ) -> i32 {
-    // SAFETY: the caller's promise.
+    // SAFETY: `handle` is null or a live instance that nobody else uses, by this function's own contract.
     unsafe { run(handle, function, |instance| in_default_environment(|| body(instance))) }
 }
 
@@ -38,7 +38,7 @@ pub(super) unsafe fn enter_to_copy(
     function: &Function,
     body: impl FnOnce(&mut Instance) -> Result<(), CallError>,
 ) -> i32 {
-    // SAFETY: the caller's promise.
+    // SAFETY: `handle` is null or a live instance that nobody else uses, by this function's own contract.
     unsafe { run(handle, function, body) }
 }
 
@@ -51,7 +51,7 @@ unsafe fn run(
     body: impl FnOnce(&mut Instance) -> Result<(), CallError>,
 ) -> i32 {
     let handle = handle.cast::<Instance>();
-    // SAFETY: null is handled by `as_mut`; otherwise the caller's promise.
+    // SAFETY: null is handled by `as_mut`; anything else is a live instance that nobody else uses during the call.
     let Some(instance) = (unsafe { handle.as_mut() }) else {
         return Status::Error as i32;
     };
@@ -106,7 +106,7 @@ fn guarded<R>(body: impl FnOnce() -> R) -> Option<R> {
 #[cold]
 unsafe fn deliver(handle: *mut Instance) {
     loop {
-        // SAFETY: the caller's promise; the reference ends before the importer is called.
+        // SAFETY: `handle` is a live instance; this reference is the only one and ends before the importer is called.
         let logger = unsafe { &mut (*handle).logger };
         let (callback, name) = (logger.callback, logger.instance_name());
         let Some(message) = logger.outbox.take() else { return };
@@ -131,7 +131,8 @@ pub(super) unsafe fn create(
         Some(Ok(message)) => {
             if request.logging_on {
                 // An instance would be out of reach for ever if the importer did not come back: it is made after this.
-                // SAFETY: the caller's promise.
+                // SAFETY: the importer has passed `callback` with the call that is being answered, so it may be
+                // called.
                 unsafe { callback.send(name, &message) };
             }
             match guarded(|| request.make(configure).map(Box::into_raw)) {
@@ -143,7 +144,7 @@ pub(super) unsafe fn create(
         Some(Err(message)) => message,
         None => request.failure(),
     };
-    // SAFETY: the caller's promise.
+    // SAFETY: the importer has passed `callback` with the call that is being answered, so it may be called.
     unsafe { callback.send(name, &message) };
     core::ptr::null_mut()
 }
@@ -154,7 +155,7 @@ pub(super) unsafe fn create(
 /// As for [`enter`]; the handle is dead afterwards.
 pub(super) unsafe fn free(handle: *mut c_void) {
     if !handle.is_null() {
-        // SAFETY: made by `create`, freed once, by the caller's promise. Dropping plain memory cannot panic.
+        // SAFETY: made by `create` and freed once, as the standards demand. Dropping plain memory cannot panic.
         drop(unsafe { Box::from_raw(handle.cast::<Instance>()) });
     }
 }
@@ -175,7 +176,7 @@ pub(super) unsafe fn input<'a, T>(
     if pointer.is_null() {
         return Err(CallError::NullPointer(name));
     }
-    // SAFETY: not null, and long enough by the caller's promise.
+    // SAFETY: not null, and `length` values long, for the importer has told the length of its own array.
     Ok(unsafe { core::slice::from_raw_parts(pointer, length) })
 }
 
@@ -195,7 +196,8 @@ pub(super) unsafe fn output<'a, T>(
     if pointer.is_null() {
         return Err(CallError::NullPointer(name));
     }
-    // SAFETY: not null, long enough and ours alone by the caller's promise.
+    // SAFETY: not null, `length` values long, for the importer has told the length of its own array, and not used by
+    // it during the call.
     Ok(unsafe { core::slice::from_raw_parts_mut(pointer, length) })
 }
 
@@ -206,7 +208,7 @@ pub(super) unsafe fn output<'a, T>(
 #[inline]
 pub(super) unsafe fn report<T>(pointer: *mut T, value: T) {
     if !pointer.is_null() {
-        // SAFETY: not null, writable by the caller's promise.
+        // SAFETY: not null, so a variable of the importer that waits for this result.
         unsafe { pointer.write(value) };
     }
 }

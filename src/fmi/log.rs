@@ -104,7 +104,8 @@ impl Callback {
     pub(super) unsafe fn send(self, instance_name: *const c_char, message: &Message) {
         let (status, text) = (message.status as i32, message.as_ptr());
         let category = LOG_CATEGORIES[message.category].0.as_ptr();
-        // SAFETY: the caller's promise; all strings end with NUL and outlive the call; the format has no conversions,
+        // SAFETY: the importer has passed callback and environment together; all strings end with NUL and outlive the
+        // call; the format has no conversions,
         // since % is doubled.
         unsafe {
             match self {
@@ -195,10 +196,10 @@ pub(super) unsafe fn set_debug_logging(
     on: bool,
     names: &[*const c_char],
 ) -> Result<(), CallError> {
-    // SAFETY: the caller's promise.
+    // SAFETY: each name is null or ends with NUL, by this function's own contract.
     let number = |name: &*const c_char| unsafe { c_string(*name) }.and_then(Logger::category);
     if let Some(unknown) = names.iter().find(|name| number(name).is_none()) {
-        // SAFETY: the caller's promise.
+        // SAFETY: each name is null or ends with NUL, by this function's own contract.
         return Err(CallError::UnknownCategory(CategoryName::new(unsafe { c_string(*unknown) })));
     }
     if names.is_empty() {
@@ -213,6 +214,6 @@ pub(super) unsafe fn set_debug_logging(
 /// # Safety
 /// `pointer` is null or points to a NUL-terminated string that outlives the result.
 pub(super) unsafe fn c_string<'a>(pointer: *const c_char) -> Option<&'a CStr> {
-    // SAFETY: not null here; the rest is the caller's promise.
+    // SAFETY: not null here, so a string with a NUL at its end that outlives the result.
     (!pointer.is_null()).then(|| unsafe { CStr::from_ptr(pointer) })
 }

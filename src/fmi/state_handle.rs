@@ -11,7 +11,7 @@ use crate::model::memory::try_boxed;
 /// `state` is null, or a state that this library made and that was not freed. Others are recognised by their
 /// alignment and their first bytes, which catches mistakes but no malice.
 pub(super) unsafe fn state_behind<'a>(state: *mut c_void) -> Result<&'a SavedState, CallError> {
-    // SAFETY: the caller's promise.
+    // SAFETY: `state` is null or a state of this library that was not freed, so what `living` accepts may be read.
     unsafe { living(state).map(|state| &*state) }
 }
 
@@ -20,10 +20,11 @@ pub(super) unsafe fn state_behind<'a>(state: *mut c_void) -> Result<&'a SavedSta
 /// # Safety
 /// `target` is null or points to a handle as for [`state_behind`].
 pub(super) unsafe fn get_state(instance: &mut Instance, target: *mut *mut c_void) -> Result<(), CallError> {
-    // SAFETY: the caller's promise.
+    // SAFETY: `target` is null, which `as_mut` handles, or points to a handle that the importer owns.
     let target = unsafe { target.as_mut() }.ok_or(CallError::NullPointer("FMUState"))?;
     if !target.is_null() {
-        // SAFETY: the caller's promise.
+        // SAFETY: `*target` was made by [`on_the_heap`] and not freed; no other reference to it exists during the
+        // call.
         return Ok(instance.save(unsafe { &mut *living(*target)? })?);
     }
     let mut state = SavedState::new(instance.model.description());
@@ -41,14 +42,15 @@ pub(super) unsafe fn deserialise_state(
     bytes: &[u8],
     target: *mut *mut c_void,
 ) -> Result<(), CallError> {
-    // SAFETY: the caller's promise.
+    // SAFETY: `target` is null, which `as_mut` handles, or points to a handle that the importer owns.
     let target = unsafe { target.as_mut() }.ok_or(CallError::NullPointer("FMUState"))?;
     let state = SavedState::deserialise(bytes, instance.model.description())?;
     instance.verify(&state)?;
     if target.is_null() {
         *target = on_the_heap(state)?;
     } else {
-        // SAFETY: the caller's promise.
+        // SAFETY: `*target` was made by [`on_the_heap`] and not freed; no other reference to it exists during the
+        // call.
         unsafe { *living(*target)? = state };
     }
     Ok(())
@@ -64,11 +66,12 @@ fn on_the_heap(state: SavedState) -> Result<*mut c_void, StateError> {
 /// # Safety
 /// As [`get_state`]; the handle is dead afterwards.
 pub(super) unsafe fn free_state(target: *mut *mut c_void) -> Result<(), CallError> {
-    // SAFETY: the caller's promise.
+    // SAFETY: `target` is null, which `as_mut` handles, or points to a handle that the importer owns.
     let Some(target) = (unsafe { target.as_mut() }).filter(|target| !target.is_null()) else {
         return Ok(());
     };
-    // SAFETY: the caller's promise; made by [`on_the_heap`], freed once.
+    // SAFETY: made by [`on_the_heap`] and freed once: the handle becomes null below, and a copy of it is no longer
+    // alive.
     unsafe {
         let state = living(*target)?;
         (*state).invalidate();
@@ -85,7 +88,7 @@ unsafe fn living(state: *mut c_void) -> Result<*mut SavedState, CallError> {
         return Err(CallError::NullPointer("FMUState"));
     }
     let state = state.cast::<SavedState>();
-    // SAFETY: not null and aligned; readable by the caller's promise.
+    // SAFETY: not null and aligned, and memory that was a state of this library until it is freed.
     if state.is_aligned() && unsafe { (*state).is_alive() } {
         Ok(state)
     } else {

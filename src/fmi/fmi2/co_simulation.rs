@@ -17,7 +17,7 @@ pub unsafe extern "C-unwind" fn fmi2DoStep(
     communication_step_size: fmi2Real,
     _no_set_fmu_state_prior_to_current_point: fmi2Boolean,
 ) -> fmi2Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time, as the standard demands of importers.
     unsafe {
         enter(component, &may::DO_STEP, |instance| {
             instance.do_step(current_communication_point, communication_step_size)
@@ -31,7 +31,7 @@ pub unsafe extern "C-unwind" fn fmi2DoStep(
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn fmi2CancelStep(component: fmi2Component) -> fmi2Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time, as the standard demands of importers.
     unsafe { enter(component, &may::CANCEL_STEP, |_| Ok(())) }
 }
 
@@ -45,7 +45,8 @@ pub unsafe extern "C-unwind" fn fmi2GetStatus(
     kind: fmi2StatusKind,
     value: *mut fmi2Status,
 ) -> fmi2Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; `value` is null or writable, as the standard
+    // demands of importers.
     unsafe {
         status(component, &may::GET_STATUS, kind, FMI2_DO_STEP_STATUS, value, |_| Status::Ok as fmi2Status)
     }
@@ -61,7 +62,8 @@ pub unsafe extern "C-unwind" fn fmi2GetRealStatus(
     kind: fmi2StatusKind,
     value: *mut fmi2Real,
 ) -> fmi2Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; `value` is null or writable, as the standard
+    // demands of importers.
     unsafe {
         status(component, &may::GET_REAL_STATUS, kind, FMI2_LAST_SUCCESSFUL_TIME, value, |instance| {
             instance.communication.now()
@@ -79,7 +81,8 @@ pub unsafe extern "C-unwind" fn fmi2GetIntegerStatus(
     kind: fmi2StatusKind,
     _value: *mut fmi2Integer,
 ) -> fmi2Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; `value` is not touched, as the standard demands of
+    // importers.
     unsafe {
         enter(component, &may::GET_INTEGER_STATUS, |instance| {
             instance.require_co_simulation()?;
@@ -98,7 +101,8 @@ pub unsafe extern "C-unwind" fn fmi2GetBooleanStatus(
     kind: fmi2StatusKind,
     value: *mut fmi2Boolean,
 ) -> fmi2Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; `value` is null or writable, as the standard
+    // demands of importers.
     unsafe { status(component, &may::GET_BOOLEAN_STATUS, kind, FMI2_TERMINATED, value, |_| FMI2_FALSE) }
 }
 
@@ -112,7 +116,8 @@ pub unsafe extern "C-unwind" fn fmi2GetStringStatus(
     kind: fmi2StatusKind,
     value: *mut fmi2String,
 ) -> fmi2Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; `value` is null or writable, as the standard
+    // demands of importers.
     unsafe { status(component, &may::GET_STRING_STATUS, kind, FMI2_PENDING_STATUS, value, |_| c"".as_ptr()) }
 }
 
@@ -128,7 +133,7 @@ unsafe fn status<T>(
     target: *mut T,
     value: impl FnOnce(&crate::fmi::Instance) -> T,
 ) -> fmi2Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: as for the exported functions, which pass on what the importer gave them.
     unsafe {
         enter(component, function, |instance| {
             instance.require_co_simulation()?;

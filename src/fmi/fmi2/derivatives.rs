@@ -21,7 +21,8 @@ pub unsafe extern "C-unwind" fn fmi2GetDirectionalDerivative(
     seed: *const fmi2Real,
     sensitivity: *mut fmi2Real,
 ) -> fmi2Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; arrays are as long as their counts say, as the
+    // standard demands of importers.
     unsafe {
         enter(component, &may::GET_DIRECTIONAL_DERIVATIVE, |instance| {
             instance.directional_derivative(
@@ -46,7 +47,8 @@ pub unsafe extern "C-unwind" fn fmi2SetRealInputDerivatives(
     orders: *const c_int,
     values: *const fmi2Real,
 ) -> fmi2Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; all arrays hold `count` elements, as the standard
+    // demands of importers.
     unsafe {
         enter(component, &may::SET_REAL_INPUT_DERIVATIVES, |instance| {
             instance.set_input_derivatives(
@@ -70,7 +72,8 @@ pub unsafe extern "C-unwind" fn fmi2GetRealOutputDerivatives(
     orders: *const c_int,
     values: *mut fmi2Real,
 ) -> fmi2Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; all arrays hold `count` elements, as the standard
+    // demands of importers.
     unsafe {
         enter(component, &may::GET_REAL_OUTPUT_DERIVATIVES, |instance| {
             instance.output_derivatives(

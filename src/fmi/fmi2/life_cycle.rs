@@ -33,7 +33,8 @@ pub unsafe extern "C-unwind" fn fmi2SetDebugLogging(
     count: usize,
     categories: *const fmi2String,
 ) -> fmi2Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time, `categories` with `count` C strings, as the
+    // standard demands of importers.
     unsafe {
         enter(component, &may::SET_DEBUG_LOGGING, |instance| {
             set_debug_logging(
@@ -60,7 +61,7 @@ pub unsafe extern "C-unwind" fn fmi2Instantiate(
     _visible: fmi2Boolean,
     logging_on: fmi2Boolean,
 ) -> fmi2Component {
-    // SAFETY: the caller's promise; importers do pass null callbacks.
+    // SAFETY: `functions` is null, as some importers pass it, or points to callbacks that stay valid during the call.
     let callback = unsafe { functions.as_ref() }
         .and_then(|functions| Some(Callback::Fmi2(functions.logger?, functions.component_environment)))
         .unwrap_or(Callback::None);
@@ -69,7 +70,8 @@ pub unsafe extern "C-unwind" fn fmi2Instantiate(
         FMI2_MODEL_EXCHANGE => Ok(Interface::ModelExchange),
         _ => Err("an unknown fmi2Type"),
     };
-    // SAFETY: the caller's promise.
+    // SAFETY: strings are null or end with NUL; `functions` is null or valid, and its logger stays callable while the
+    // instance lives, as the standard demands of importers.
     unsafe {
         let request = Request {
             function: "fmi2Instantiate",
@@ -89,7 +91,7 @@ pub unsafe extern "C-unwind" fn fmi2Instantiate(
 /// `component` is null or a live handle, dead afterwards.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2FreeInstance(component: fmi2Component) {
-    // SAFETY: the caller's promise.
+    // SAFETY: `component` is null or a live handle, dead afterwards, as the standard demands of importers.
     unsafe { free(component) }
 }
 
@@ -106,7 +108,7 @@ pub unsafe extern "C-unwind" fn fmi2SetupExperiment(
     stop_time_defined: fmi2Boolean,
     stop_time: fmi2Real,
 ) -> fmi2Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time, as the standard demands of importers.
     unsafe {
         enter(component, &may::SETUP_EXPERIMENT, |instance| {
             instance.set_experiment(start_time, (stop_time_defined != FMI2_FALSE).then_some(stop_time))
@@ -118,7 +120,7 @@ pub unsafe extern "C-unwind" fn fmi2SetupExperiment(
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn fmi2EnterInitializationMode(component: fmi2Component) -> fmi2Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time, as the standard demands of importers.
     unsafe {
         enter(component, &may::ENTER_INITIALIZATION_MODE, |instance| instance.enter_initialization_mode())
     }
@@ -128,7 +130,7 @@ pub unsafe extern "C-unwind" fn fmi2EnterInitializationMode(component: fmi2Compo
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn fmi2ExitInitializationMode(component: fmi2Component) -> fmi2Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time, as the standard demands of importers.
     unsafe {
         enter(component, &may::EXIT_INITIALIZATION_MODE, |instance| instance.exit_initialization_mode())
     }
@@ -138,7 +140,7 @@ pub unsafe extern "C-unwind" fn fmi2ExitInitializationMode(component: fmi2Compon
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn fmi2Terminate(component: fmi2Component) -> fmi2Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time, as the standard demands of importers.
     unsafe { enter(component, &may::TERMINATE, |instance| instance.terminate()) }
 }
 
@@ -148,6 +150,6 @@ pub unsafe extern "C-unwind" fn fmi2Terminate(component: fmi2Component) -> fmi2S
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn fmi2Reset(component: fmi2Component) -> fmi2Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time, as the standard demands of importers.
     unsafe { enter(component, &may::RESET, |instance| instance.reset()) }
 }

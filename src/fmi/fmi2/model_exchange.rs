@@ -9,7 +9,7 @@ use crate::fmi::boundary::{enter, input, output, report};
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn fmi2EnterEventMode(component: fmi2Component) -> fmi2Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time, as the standard demands of importers.
     unsafe { enter(component, &may::ENTER_EVENT_MODE, |instance| instance.enter_event_mode()) }
 }
 
@@ -22,7 +22,8 @@ pub unsafe extern "C-unwind" fn fmi2NewDiscreteStates(
     component: fmi2Component,
     event_info: *mut fmi2EventInfo,
 ) -> fmi2Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; `event_info` is null or writable, as the standard
+    // demands of importers.
     unsafe {
         enter(component, &may::NEW_DISCRETE_STATES, |instance| {
             let end = instance.update_discrete_states()?;
@@ -46,7 +47,7 @@ pub unsafe extern "C-unwind" fn fmi2NewDiscreteStates(
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn fmi2EnterContinuousTimeMode(component: fmi2Component) -> fmi2Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time, as the standard demands of importers.
     unsafe {
         enter(component, &may::ENTER_CONTINUOUS_TIME_MODE, |instance| instance.enter_continuous_time_mode())
     }
@@ -63,7 +64,8 @@ pub unsafe extern "C-unwind" fn fmi2CompletedIntegratorStep(
     enter_event_mode: *mut fmi2Boolean,
     terminate_simulation: *mut fmi2Boolean,
 ) -> fmi2Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; the results are null or writable, as the standard
+    // demands of importers.
     unsafe {
         enter(component, &may::COMPLETED_INTEGRATOR_STEP, |instance| {
             instance.complete_integrator_step()?;
@@ -78,7 +80,7 @@ pub unsafe extern "C-unwind" fn fmi2CompletedIntegratorStep(
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn fmi2SetTime(component: fmi2Component, time: fmi2Real) -> fmi2Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time, as the standard demands of importers.
     unsafe { enter(component, &may::SET_TIME, |instance| instance.set_time(time)) }
 }
 
@@ -90,7 +92,8 @@ pub unsafe extern "C-unwind" fn fmi2SetContinuousStates(
     states: *const fmi2Real,
     count: usize,
 ) -> fmi2Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; `states` holds `count` elements, as the standard
+    // demands of importers.
     unsafe {
         enter(component, &may::SET_CONTINUOUS_STATES, |instance| {
             instance.set_continuous_states(input(states, count, "x")?)
@@ -109,7 +112,8 @@ macro_rules! vectors {
             values: *mut fmi2Real,
             count: usize,
         ) -> fmi2Status {
-            // SAFETY: the caller's promise.
+            // SAFETY: the handle is live and used by one thread at a time; `values` has room for `count` elements, as
+            // the standard demands of importers.
             unsafe {
                 enter(component, &may::$rule, |instance| instance.$get(output(values, count, $argument)?))
             }

@@ -15,7 +15,8 @@ pub unsafe extern "C-unwind" fn fmi2GetFMUstate(
     component: fmi2Component,
     state: *mut fmi2FMUstate,
 ) -> fmi2Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; `state` is null or points to null or to a living
+    // state, as the standard demands of importers.
     unsafe { enter(component, &may::GET_FMU_STATE, |instance| get_state(instance, state)) }
 }
 
@@ -25,7 +26,8 @@ pub unsafe extern "C-unwind" fn fmi2GetFMUstate(
 /// A live handle, used by one thread at a time; `state` is null or a living state.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn fmi2SetFMUstate(component: fmi2Component, state: fmi2FMUstate) -> fmi2Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; `state` is null or a living state, as the standard
+    // demands of importers.
     unsafe { enter(component, &may::SET_FMU_STATE, |instance| Ok(instance.restore(state_behind(state)?)?)) }
 }
 
@@ -38,7 +40,8 @@ pub unsafe extern "C-unwind" fn fmi2FreeFMUstate(
     component: fmi2Component,
     state: *mut fmi2FMUstate,
 ) -> fmi2Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; `state` is null or points to null or to a living
+    // state, as the standard demands of importers.
     unsafe { enter(component, &may::FREE_FMU_STATE, |_| free_state(state)) }
 }
 
@@ -52,7 +55,8 @@ pub unsafe extern "C-unwind" fn fmi2SerializedFMUstateSize(
     state: fmi2FMUstate,
     size: *mut usize,
 ) -> fmi2Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; `state` is null or a living state, `size` null or
+    // writable, as the standard demands of importers.
     unsafe {
         enter(component, &may::SERIALIZED_FMU_STATE_SIZE, |_| {
             output(size, 1, "size")?[0] = state_behind(state)?.size();
@@ -72,7 +76,8 @@ pub unsafe extern "C-unwind" fn fmi2SerializeFMUstate(
     bytes: *mut fmi2Byte,
     size: usize,
 ) -> fmi2Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; `state` is null or a living state, `bytes` holds
+    // `size` bytes, as the standard demands of importers.
     unsafe {
         enter(component, &may::SERIALIZE_FMU_STATE, |_| {
             Ok(state_behind(state)?.serialise(output(bytes.cast(), size, "serializedState")?)?)
@@ -92,7 +97,8 @@ pub unsafe extern "C-unwind" fn fmi2DeSerializeFMUstate(
     size: usize,
     state: *mut fmi2FMUstate,
 ) -> fmi2Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; `bytes` holds `size` bytes, `state` is null or
+    // points to null or to a living state, as the standard demands of importers.
     unsafe {
         enter(component, &may::DESERIALIZE_FMU_STATE, |instance| {
             deserialise_state(instance, input(bytes.cast(), size, "serializedState")?, state)

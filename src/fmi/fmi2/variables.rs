@@ -32,7 +32,8 @@ macro_rules! accessors {
             count: usize,
             values: *mut $type,
         ) -> fmi2Status {
-            // SAFETY: the caller's promise.
+            // SAFETY: the handle is live and used by one thread at a time; both arrays hold `count` elements, as the
+            // standard demands of importers.
             unsafe {
                 $enter(component, &may::$get_rule, |instance| {
                     let references = input(references, count, "vr")?;
@@ -50,7 +51,8 @@ macro_rules! accessors {
             count: usize,
             values: *const $type,
         ) -> fmi2Status {
-            // SAFETY: the caller's promise.
+            // SAFETY: the handle is live and used by one thread at a time; both arrays hold `count` elements, as the
+            // standard demands of importers.
             unsafe {
                 $enter(component, &may::$set_rule, |instance| {
                     let references = input(references, count, "vr")?;

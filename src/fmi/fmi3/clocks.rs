@@ -16,7 +16,8 @@ pub unsafe extern "C-unwind" fn fmi3GetClock(
     count: usize,
     values: *mut fmi3Clock,
 ) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; both arrays hold `count` elements, as the standard
+    // demands of importers.
     unsafe {
         enter(instance, &may::GET_CLOCK, |instance| {
             let references = input(references, count, "valueReferences")?;
@@ -34,7 +35,8 @@ pub unsafe extern "C-unwind" fn fmi3SetClock(
     count: usize,
     values: *const fmi3Clock,
 ) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; both arrays hold `count` elements, as the standard
+    // demands of importers.
     unsafe {
         enter(instance, &may::SET_CLOCK, |instance| {
             let references = input(references, count, "valueReferences")?;
@@ -55,7 +57,8 @@ pub unsafe extern "C-unwind" fn fmi3GetIntervalDecimal(
     intervals: *mut fmi3Float64,
     qualifiers: *mut fmi3IntervalQualifier,
 ) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; all arrays hold `count` elements, as the standard
+    // demands of importers.
     unsafe {
         enter(instance, &may::GET_INTERVAL_DECIMAL, |instance| {
             let references = input(references, count, "valueReferences")?;
@@ -84,7 +87,8 @@ pub unsafe extern "C-unwind" fn fmi3GetIntervalFraction(
     resolutions: *mut u64,
     qualifiers: *mut fmi3IntervalQualifier,
 ) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; all arrays hold `count` elements, as the standard
+    // demands of importers.
     unsafe {
         enter(instance, &may::GET_INTERVAL_FRACTION, |instance| {
             let references = input(references, count, "valueReferences")?;
@@ -115,7 +119,8 @@ pub unsafe extern "C-unwind" fn fmi3GetShiftDecimal(
     count: usize,
     shifts: *mut fmi3Float64,
 ) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; both arrays hold `count` elements, as the standard
+    // demands of importers.
     unsafe {
         enter(instance, &may::GET_SHIFT_DECIMAL, |instance| {
             let references = input(references, count, "valueReferences")?;
@@ -141,7 +146,8 @@ pub unsafe extern "C-unwind" fn fmi3GetShiftFraction(
     counters: *mut u64,
     resolutions: *mut u64,
 ) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; all arrays hold `count` elements, as the standard
+    // demands of importers.
     unsafe {
         enter(instance, &may::GET_SHIFT_FRACTION, |instance| {
             let references = input(references, count, "valueReferences")?;
@@ -170,7 +176,8 @@ pub unsafe extern "C-unwind" fn fmi3SetIntervalDecimal(
     count: usize,
     intervals: *const fmi3Float64,
 ) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; both arrays hold `count` elements, as the standard
+    // demands of importers.
     unsafe {
         enter(instance, &may::SET_INTERVAL_DECIMAL, |instance| {
             let references = input(references, count, "valueReferences")?;
@@ -192,7 +199,8 @@ pub unsafe extern "C-unwind" fn fmi3SetIntervalFraction(
     counters: *const u64,
     resolutions: *const u64,
 ) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; all arrays hold `count` elements, as the standard
+    // demands of importers.
     unsafe {
         enter(instance, &may::SET_INTERVAL_FRACTION, |instance| {
             let references = input(references, count, "valueReferences")?;

@@ -34,7 +34,9 @@ pub unsafe extern "C-unwind" fn fmi3DoStep(
             Progress::Done(end) => (is_event, is_early) = (end.is_event.into(), end.is_early.into()),
             Progress::Waits(update, time) => waiting.set(Some((update, time))),
         });
-        // SAFETY: the caller's promise.
+        // SAFETY: the handle is live and used by one thread at a time; the results are null or writable; the
+        // importer's callback calls nothing but what intermediate update mode allows, as the standard demands of
+        // importers.
         unsafe {
             report(event_handling_needed, is_event);
             report(terminate_simulation, FMI3_FALSE);
@@ -43,7 +45,8 @@ pub unsafe extern "C-unwind" fn fmi3DoStep(
         }
         outcome
     };
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; the results are null or writable; the importer's
+    // callback calls nothing but what intermediate update mode allows, as the standard demands of importers.
     let mut status = unsafe {
         enter(instance, &may::DO_STEP, |instance| {
             let outcome = instance.begin_step(current_communication_point, communication_step_size);
@@ -67,7 +70,9 @@ pub unsafe extern "C-unwind" fn fmi3DoStep(
             );
         }
         let early_return = (is_requested != FMI3_FALSE).then_some(return_time);
-        // SAFETY: the caller's promise.
+        // SAFETY: the handle is live and used by one thread at a time; the results are null or writable; the
+        // importer's callback calls nothing but what intermediate update mode allows, as the standard demands of
+        // importers.
         status = unsafe {
             enter(instance, &may::RETURN_FROM_INTERMEDIATE_UPDATE, |instance| {
                 let outcome = instance.resume_step(early_return);

@@ -27,7 +27,8 @@ pub unsafe extern "C-unwind" fn fmi3GetDirectionalDerivative(
     sensitivity: *mut fmi3Float64,
     sensitivity_count: usize,
 ) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; arrays are as long as their counts say, as the
+    // standard demands of importers.
     unsafe {
         enter(instance, &may::GET_DIRECTIONAL_DERIVATIVE, |instance| {
             require_length("nSeed", seed_count, known_count)?;
@@ -58,7 +59,8 @@ pub unsafe extern "C-unwind" fn fmi3GetAdjointDerivative(
     sensitivity: *mut fmi3Float64,
     sensitivity_count: usize,
 ) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; arrays are as long as their counts say, as the
+    // standard demands of importers.
     unsafe {
         enter(instance, &may::GET_ADJOINT_DERIVATIVE, |instance| {
             require_length("nSeed", seed_count, unknown_count)?;
@@ -86,7 +88,8 @@ pub unsafe extern "C-unwind" fn fmi3GetOutputDerivatives(
     values: *mut fmi3Float64,
     value_count: usize,
 ) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; arrays are as long as their counts say, as the
+    // standard demands of importers.
     unsafe {
         enter(instance, &may::GET_OUTPUT_DERIVATIVES, |instance| {
             require_length("nValues", value_count, count)?;

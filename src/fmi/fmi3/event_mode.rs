@@ -9,7 +9,7 @@ use crate::fmi::boundary::{enter, report};
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn fmi3EnterEventMode(instance: fmi3Instance) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time, as the standard demands of importers.
     unsafe { enter(instance, &may::ENTER_EVENT_MODE, |instance| instance.enter_event_mode()) }
 }
 
@@ -27,7 +27,8 @@ pub unsafe extern "C-unwind" fn fmi3UpdateDiscreteStates(
     next_event_time_defined: *mut fmi3Boolean,
     next_event_time: *mut fmi3Float64,
 ) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; the results are null or writable, as the standard
+    // demands of importers.
     unsafe {
         enter(instance, &may::UPDATE_DISCRETE_STATES, |instance| {
             let end = instance.update_discrete_states()?;
@@ -48,7 +49,7 @@ pub unsafe extern "C-unwind" fn fmi3UpdateDiscreteStates(
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn fmi3EvaluateDiscreteStates(instance: fmi3Instance) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time, as the standard demands of importers.
     unsafe { enter(instance, &may::EVALUATE_DISCRETE_STATES, |_| Ok(())) }
 }
 
@@ -56,6 +57,6 @@ pub unsafe extern "C-unwind" fn fmi3EvaluateDiscreteStates(instance: fmi3Instanc
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn fmi3EnterStepMode(instance: fmi3Instance) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time, as the standard demands of importers.
     unsafe { enter(instance, &may::ENTER_STEP_MODE, |instance| instance.enter_step_mode()) }
 }

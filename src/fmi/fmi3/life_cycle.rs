@@ -28,7 +28,8 @@ pub unsafe extern "C-unwind" fn fmi3SetDebugLogging(
     count: usize,
     categories: *const fmi3String,
 ) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time, `categories` with `count` C strings, as the
+    // standard demands of importers.
     unsafe {
         enter(instance, &may::SET_DEBUG_LOGGING, |instance| {
             set_debug_logging(
@@ -66,7 +67,8 @@ pub unsafe extern "C-unwind" fn fmi3InstantiateCoSimulation(
         FMI3_FALSE => Interface::CoSimulation,
         _ => Interface::CoSimulationWithEvents { may_return_early },
     };
-    // SAFETY: the caller's promise.
+    // SAFETY: strings are null or end with NUL; `required_intermediate_variables` is null or holds as many references
+    // as said; the callbacks stay callable while the instance lives, as the standard demands of importers.
     unsafe {
         let request = Request {
             function: "fmi3InstantiateCoSimulation",
@@ -109,7 +111,7 @@ pub unsafe extern "C-unwind" fn fmi3InstantiateModelExchange(
     environment: fmi3InstanceEnvironment,
     log_message: Option<fmi3LogMessageCallback>,
 ) -> fmi3Instance {
-    // SAFETY: the caller's promise.
+    // SAFETY: the same holds as for [`fmi3InstantiateCoSimulation`], as the standard demands of importers.
     unsafe {
         let request = Request {
             function: "fmi3InstantiateModelExchange",
@@ -140,7 +142,7 @@ pub unsafe extern "C-unwind" fn fmi3InstantiateScheduledExecution(
     _lock_preemption: Option<fmi3LockPreemptionCallback>,
     _unlock_preemption: Option<fmi3UnlockPreemptionCallback>,
 ) -> fmi3Instance {
-    // SAFETY: the caller's promise.
+    // SAFETY: the same holds as for [`fmi3InstantiateCoSimulation`], as the standard demands of importers.
     unsafe {
         let request = Request {
             function: "fmi3InstantiateScheduledExecution",
@@ -167,7 +169,7 @@ fn callback(log_message: Option<fmi3LogMessageCallback>, environment: fmi3Instan
 /// `instance` is null or a live handle, dead afterwards.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3FreeInstance(instance: fmi3Instance) {
-    // SAFETY: the caller's promise.
+    // SAFETY: `instance` is null or a live handle, dead afterwards, as the standard demands of importers.
     unsafe { free(instance) }
 }
 
@@ -184,7 +186,7 @@ pub unsafe extern "C-unwind" fn fmi3EnterInitializationMode(
     stop_time_defined: fmi3Boolean,
     stop_time: fmi3Float64,
 ) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time, as the standard demands of importers.
     unsafe {
         enter(instance, &may::ENTER_INITIALIZATION_MODE, |instance| {
             instance.set_experiment(start_time, (stop_time_defined != FMI3_FALSE).then_some(stop_time))?;
@@ -197,7 +199,7 @@ pub unsafe extern "C-unwind" fn fmi3EnterInitializationMode(
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn fmi3ExitInitializationMode(instance: fmi3Instance) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time, as the standard demands of importers.
     unsafe { enter(instance, &may::EXIT_INITIALIZATION_MODE, |instance| instance.exit_initialization_mode()) }
 }
 
@@ -205,7 +207,7 @@ pub unsafe extern "C-unwind" fn fmi3ExitInitializationMode(instance: fmi3Instanc
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn fmi3Terminate(instance: fmi3Instance) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time, as the standard demands of importers.
     unsafe { enter(instance, &may::TERMINATE, |instance| instance.terminate()) }
 }
 
@@ -215,6 +217,6 @@ pub unsafe extern "C-unwind" fn fmi3Terminate(instance: fmi3Instance) -> fmi3Sta
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn fmi3Reset(instance: fmi3Instance) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time, as the standard demands of importers.
     unsafe { enter(instance, &may::RESET, |instance| instance.reset()) }
 }

@@ -9,7 +9,7 @@ use crate::fmi::boundary::{enter, input, output, report};
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn fmi3EnterContinuousTimeMode(instance: fmi3Instance) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time, as the standard demands of importers.
     unsafe {
         enter(instance, &may::ENTER_CONTINUOUS_TIME_MODE, |instance| instance.enter_continuous_time_mode())
     }
@@ -26,7 +26,8 @@ pub unsafe extern "C-unwind" fn fmi3CompletedIntegratorStep(
     enter_event_mode: *mut fmi3Boolean,
     terminate_simulation: *mut fmi3Boolean,
 ) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; the results are null or writable, as the standard
+    // demands of importers.
     unsafe {
         enter(instance, &may::COMPLETED_INTEGRATOR_STEP, |instance| {
             instance.complete_integrator_step()?;
@@ -41,7 +42,7 @@ pub unsafe extern "C-unwind" fn fmi3CompletedIntegratorStep(
 /// A live handle, used by one thread at a time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn fmi3SetTime(instance: fmi3Instance, time: fmi3Float64) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time, as the standard demands of importers.
     unsafe { enter(instance, &may::SET_TIME, |instance| instance.set_time(time)) }
 }
 
@@ -53,7 +54,8 @@ pub unsafe extern "C-unwind" fn fmi3SetContinuousStates(
     states: *const fmi3Float64,
     count: usize,
 ) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; `states` holds `count` elements, as the standard
+    // demands of importers.
     unsafe {
         enter(instance, &may::SET_CONTINUOUS_STATES, |instance| {
             instance.set_continuous_states(input(states, count, "continuousStates")?)
@@ -72,7 +74,8 @@ macro_rules! vectors {
             values: *mut fmi3Float64,
             count: usize,
         ) -> fmi3Status {
-            // SAFETY: the caller's promise.
+            // SAFETY: the handle is live and used by one thread at a time; `values` has room for `count` elements, as
+            // the standard demands of importers.
             unsafe {
                 enter(instance, &may::$rule, |instance| instance.$get(output(values, count, $argument)?))
             }
@@ -94,7 +97,8 @@ macro_rules! counts {
         /// A live handle, used by one thread at a time; `count` is writable.
         #[unsafe(no_mangle)]
         pub unsafe extern "C-unwind" fn $function(instance: fmi3Instance, count: *mut usize) -> fmi3Status {
-            // SAFETY: the caller's promise.
+            // SAFETY: the handle is live and used by one thread at a time; `count` is writable, as the standard
+            // demands of importers.
             unsafe {
                 enter(instance, &may::$rule, |instance| {
                     instance.require_model_exchange()?;

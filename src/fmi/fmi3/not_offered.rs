@@ -14,7 +14,8 @@ macro_rules! not_offered {
         /// A live handle, used by one thread at a time; the other arguments are not touched.
         #[unsafe(no_mangle)]
         pub unsafe extern "C-unwind" fn $function(instance: fmi3Instance $(, $argument: $type)*) -> fmi3Status {
-            // SAFETY: the caller's promise.
+            // SAFETY: the handle is live and used by one thread at a time; the other arguments are not touched, as
+            // the standard demands of importers.
             unsafe { enter(instance, &may::$rule, |_| Err(CallError::NotOffered($because))) }
         }
     )*};

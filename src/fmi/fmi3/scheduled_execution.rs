@@ -18,7 +18,8 @@ pub unsafe extern "C-unwind" fn fmi3ActivateModelPartition(
     activation_time: fmi3Float64,
 ) -> fmi3Status {
     let mut clock_update = None;
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; the importer's callback calls nothing but what
+    // clock update mode allows, as the standard demands of importers.
     let status = unsafe {
         enter(instance, &may::ACTIVATE_MODEL_PARTITION, |instance| {
             instance.activate_model_partition(clock, activation_time)?;
@@ -36,7 +37,8 @@ pub unsafe extern "C-unwind" fn fmi3ActivateModelPartition(
     // SAFETY: the importer vouches for its callback. No reference to the instance is alive, since the importer uses
     // the instance within.
     unsafe { callback(environment) };
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; the importer's callback calls nothing but what
+    // clock update mode allows, as the standard demands of importers.
     unsafe {
         enter(instance, &may::RETURN_FROM_CLOCK_UPDATE, |instance| {
             instance.leave_clock_update_mode();

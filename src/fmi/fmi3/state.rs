@@ -15,7 +15,8 @@ pub unsafe extern "C-unwind" fn fmi3GetFMUState(
     instance: fmi3Instance,
     state: *mut fmi3FMUState,
 ) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; `state` is null or points to null or to a living
+    // state, as the standard demands of importers.
     unsafe { enter(instance, &may::GET_FMU_STATE, |instance| get_state(instance, state)) }
 }
 
@@ -25,7 +26,8 @@ pub unsafe extern "C-unwind" fn fmi3GetFMUState(
 /// A live handle, used by one thread at a time; `state` is null or a living state.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn fmi3SetFMUState(instance: fmi3Instance, state: fmi3FMUState) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; `state` is null or a living state, as the standard
+    // demands of importers.
     unsafe { enter(instance, &may::SET_FMU_STATE, |instance| Ok(instance.restore(state_behind(state)?)?)) }
 }
 
@@ -38,7 +40,8 @@ pub unsafe extern "C-unwind" fn fmi3FreeFMUState(
     instance: fmi3Instance,
     state: *mut fmi3FMUState,
 ) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; `state` is null or points to null or to a living
+    // state, as the standard demands of importers.
     unsafe { enter(instance, &may::FREE_FMU_STATE, |_| free_state(state)) }
 }
 
@@ -52,7 +55,8 @@ pub unsafe extern "C-unwind" fn fmi3SerializedFMUStateSize(
     state: fmi3FMUState,
     size: *mut usize,
 ) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; `state` is null or a living state, `size` null or
+    // writable, as the standard demands of importers.
     unsafe {
         enter(instance, &may::SERIALIZED_FMU_STATE_SIZE, |_| {
             output(size, 1, "size")?[0] = state_behind(state)?.size();
@@ -72,7 +76,8 @@ pub unsafe extern "C-unwind" fn fmi3SerializeFMUState(
     bytes: *mut fmi3Byte,
     size: usize,
 ) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; `state` is null or a living state, `bytes` holds
+    // `size` bytes, as the standard demands of importers.
     unsafe {
         enter(instance, &may::SERIALIZE_FMU_STATE, |_| {
             Ok(state_behind(state)?.serialise(output(bytes, size, "serializedState")?)?)
@@ -92,7 +97,8 @@ pub unsafe extern "C-unwind" fn fmi3DeserializeFMUState(
     size: usize,
     state: *mut fmi3FMUState,
 ) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; `bytes` holds `size` bytes, `state` is null or
+    // points to null or to a living state, as the standard demands of importers.
     unsafe {
         enter(instance, &may::DESERIALIZE_FMU_STATE, |instance| {
             deserialise_state(instance, input(bytes, size, "serializedState")?, state)

@@ -29,7 +29,8 @@ macro_rules! accessors {
             values: *mut $type,
             value_count: usize,
         ) -> fmi3Status {
-            // SAFETY: the caller's promise.
+            // SAFETY: the handle is live and used by one thread at a time; arrays are as long as their counts say, as
+            // the standard demands of importers.
             unsafe {
                 $enter(instance, &may::$get_rule, |instance| {
                     require_length(value_count, count)?;
@@ -55,7 +56,8 @@ macro_rules! accessors {
             values: *const $type,
             value_count: usize,
         ) -> fmi3Status {
-            // SAFETY: the caller's promise.
+            // SAFETY: the handle is live and used by one thread at a time; arrays are as long as their counts say, as
+            // the standard demands of importers.
             unsafe {
                 $enter(instance, &may::$set_rule, |instance| {
                     require_length(value_count, count)?;
@@ -112,7 +114,8 @@ pub unsafe extern "C-unwind" fn fmi3GetBinary(
     values: *mut fmi3Binary,
     value_count: usize,
 ) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; arrays are as long as their counts say, as the
+    // standard demands of importers.
     unsafe {
         enter(instance, &may::GET_BINARY, |instance| {
             require_length(value_count, count)?;
@@ -133,7 +136,8 @@ pub unsafe extern "C-unwind" fn fmi3SetBinary(
     values: *const fmi3Binary,
     value_count: usize,
 ) -> fmi3Status {
-    // SAFETY: the caller's promise.
+    // SAFETY: the handle is live and used by one thread at a time; arrays are as long as their counts say, as the
+    // standard demands of importers.
     unsafe {
         enter(instance, &may::SET_BINARY, |instance| {
             require_length(value_count, count)?;
