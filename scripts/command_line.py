@@ -76,7 +76,7 @@ def image(text: str) -> Path:
 
 
 def parser(documentation: str) -> argparse.ArgumentParser:
-    """Parser with the options that say which units to run."""
+    """Parser with the options that say which models to run."""
     made = Parser(
         description=documentation.split("\n")[0], formatter_class=argparse.ArgumentDefaultsHelpFormatter
     )
@@ -104,7 +104,7 @@ def parse(made: argparse.ArgumentParser) -> argparse.Namespace:
             f"--stop-time {options.stop_time:g} s with --step-size {options.step_size:g} s is {steps:.4g} steps: "
             f"expected 1 to {MOST_STEPS}"
         )
-    # Whole steps: the units compute nothing past the stop time.
+    # Whole steps: the models compute nothing past the stop time.
     options.stop_time = round(steps) * options.step_size
     if not options.show:
         pyplot.switch_backend("Agg")

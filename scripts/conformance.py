@@ -29,7 +29,7 @@ from standard_output import Parser, tell
 PAGE = REPOSITORY / "docs" / "conformance.md"
 TIME_LIMIT = 120.0  # s
 
-UNIT_TASKS = [task for module in (checkers, with_fmpy, with_fmuloader, in_cpp) for task in module.TASKS]
+MODEL_TASKS = [task for module in (checkers, with_fmpy, with_fmuloader, in_cpp) for task in module.TASKS]
 # Directories of packages, the version of the standard in them, and how a table calls it.
 FORMS = {"fmi2": (2, "FMI 2"), "fmi3": (3, "FMI 3"), "fmi3-clocked": (3, "FMI 3, clocks")}
 ELEMENTS = {"CoSimulation": CO_SIMULATION, "ModelExchange": MODEL_EXCHANGE, "ScheduledExecution": SCHEDULED_EXECUTION}
@@ -43,7 +43,7 @@ the Python tests run every cell again and fail if this page is not what they fou
 Each FMU carries a reference input and the output that belongs to it (`extra/org.fmi-standard.fmi-ls-ref`). A program
 that runs an FMU is given the one and has to return the other: *exact* means the same bits at every step, *to 1e-09*
 within that part of the largest magnitude of each variable, *to 1e-06* the same, or within that part of its nominal
-value, for states that the program's own integrator has solved for. *valid* and *read* are the words of checkers and readers. An empty cell: the unit does not
+value, for states that the program's own integrator has solved for. *valid* and *read* are the words of checkers and readers. An empty cell: the model does not
 offer that interface, or does not come in that form: controllers for FMI 3 come without clocks (`fmi3/`) and with them
 (`fmi3-clocked/`), plants have none. *limit*: the program cannot do this with any FMU of that kind; its own words are below the table.
 """
@@ -79,7 +79,7 @@ def interfaces(fmu: Path) -> set[str]:
 def cells(dist: Path) -> Iterator[tuple[Task, Path]]:
     """Every task with every package that it applies to, of the programs that are installed."""
     for form, (fmi_version, _) in FORMS.items():
-        for task in UNIT_TASKS:
+        for task in MODEL_TASKS:
             for fmu in sorted(dist.glob(f"{form}/*.fmu")):
                 if task.fmi_version == fmi_version and is_installed(task) and task.interface in interfaces(fmu):
                     yield task, fmu
@@ -126,7 +126,7 @@ def carry_out(task: Task, package: Path, sender: object) -> None:
 
 
 def form_of(package: Path) -> str | None:
-    """Directory in which a unit is packaged; None for systems."""
+    """Directory in which a model is packaged; None for systems."""
     return package.parent.name if package.suffix == ".fmu" else None
 
 
@@ -164,9 +164,9 @@ def page(outcomes: dict[tuple[Task, Path], Outcome]) -> str:
         HEAD,
         "## FMUs",
         "",
-        *table(UNIT_TASKS, outcomes, " Standard | Program | Task |"),
+        *table(MODEL_TASKS, outcomes, " Standard | Program | Task |"),
         "",
-        *sorted(limits_of(UNIT_TASKS, outcomes)),
+        *sorted(limits_of(MODEL_TASKS, outcomes)),
         "",
         "## Systems (SSP)",
         "",
@@ -183,10 +183,10 @@ def page(outcomes: dict[tuple[Task, Path], Outcome]) -> str:
 SYSTEMS_HEAD = """\
 `1.0` are the packages in `dist/`, whose loop is closed; `1.0, driven` those in `dist/driven/`, which also have
 connectors of the system: the inputs that the loop leaves open, and its outputs; `2.0` those in `dist/ssp2/`, with
-connectors of the system and the units for FMI 3.0.
+connectors of the system and the models for FMI 3.0.
 
 A program that runs a package is asked two things. *exact*, and *to 1e-09* as above, compare its bits with a plain loop
-of the same FMUs in the program's own order of exchange, over 500 steps: both units step, then values are passed on, and
+of the same FMUs in the program's own order of exchange, over 500 steps: both models step, then values are passed on, and
 the first step sees the start values, in FMPy zeros. Beside the bits the physics have to be right: after two seconds the
 bearing is where the loop of the paper has it, in which the controller reads and acts within the same sample, to 2 %; the
 ball is up, the rig's ball at its operating point; and from the observers' start-up on the estimates are within 1 % of
@@ -195,10 +195,10 @@ the true values.
 
 NOTES = """\
 - FMPy does not apply the parameter sets that a package binds unless it is handed them, and starts all wires at 0. The
-  units in a package therefore have the start values of the loop inside, and a controller lets the first step pass.
+  models in a package therefore have the start values of the loop inside, and a controller lets the first step pass.
 - The packages' parameter sets have no enumerations, since none of the programs takes them: {enumerations}.
 - The step of a package is in its default experiment, where libcosim reads it, on its system, where OMSimulator writes it
-  in packages of its own, and in the default experiments of its units. FMPy and ecospy are told it. No loop bears FMPy's own choice of 10 ms, with which each value acts two steps late: the
+  in packages of its own, and in the default experiments of its models. FMPy and ecospy are told it. No loop bears FMPy's own choice of 10 ms, with which each value acts two steps late: the
   observer of the bearing would see ten equal positions in a row and the coil of the ball forgets its current in 5 ms, so
   that even the true states fed back lose it; of the rig the printed PID is lost from 2 ms on. The controllers in the
   packages refuse steps beyond 1 ms and say so. Ball and rig bear all those from 0.1 ms that were tried, 0.3 and 0.7 ms

@@ -166,7 +166,7 @@ class Fmu:
 
 
 def parameter_values(path: Path, fmu: Fmu) -> dict[str, Value]:
-    """Start values for a unit from a parameter file, such as `maglev-fmu tune` writes; items of enumerations by number."""
+    """Start values for a model from a parameter file, such as `maglev-fmu tune` writes; items of enumerations by number."""
     try:
         with path.open("rb") as file:
             text = file.read(LONGEST_PARAMETER_FILE + 1)
@@ -177,10 +177,12 @@ def parameter_values(path: Path, fmu: Fmu) -> dict[str, Value]:
     except (OSError, ValueError, RecursionError) as error:
         raise ValueError(f"cannot read the parameter file {path}: {error}") from None
     if not isinstance(content, dict) or not isinstance(content.get("values"), dict):
-        raise ValueError(f'{path} is no parameter file: expected {{"unit": NAME, "values": {{...}}}}')
-    unit = fmu.description.modelName
-    if content.get("unit") != unit:
-        raise ValueError(f"{path} is for {content.get('unit')!r}: expected a file for {unit}")
+        raise ValueError(f'{path} is no parameter file: expected {{"model": NAME, "values": {{...}}}}')
+    if "model" in content and "unit" in content:
+        raise ValueError(f'{path}: "model" and "unit" both name the model: expected one of them')
+    model, named = fmu.description.modelName, content.get("model", content.get("unit"))
+    if named != model:
+        raise ValueError(f"{path} is for {named!r}: expected a file for {model}")
     units = content.get("units", {})
     if not isinstance(units, dict):
         raise ValueError(f'{path}: expected "units": {{...}}')
@@ -232,7 +234,7 @@ def _logger(log: Callable[[str], None] | None) -> Callable[..., None]:
 
 
 def _tell(message: str) -> None:
-    """Messages of a unit go where errors go; nothing may come out of a callback of C."""
+    """Messages of a model go where errors go; nothing may come out of a callback of C."""
     try:
         print(message, file=sys.stderr, flush=True)
     except (OSError, ValueError):

@@ -22,7 +22,7 @@ from matplotlib import pyplot
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-# Wires: output of one unit, input of the other. The true state is for controller.feedback = state only.
+# Wires: output of one model, input of the other. The true state is for controller.feedback = state only.
 PLANT_TO_CONTROLLER = {
     "current_measured": "current",
     "voltage_measured": "voltage_applied",
@@ -95,9 +95,9 @@ def transfer(source: Fmu, target: Fmu, wires: dict[str, str]) -> None:
 def simulate(
     plant: Fmu, controller: Fmu, reference: Reference, order: str, step_size: float, stop_time: float
 ) -> Trajectory:
-    """Step two initialized units up to `stop_time` with a fixed `step_size`, both in s.
+    """Step two initialized models up to `stop_time` with a fixed `step_size`, both in s.
 
-    In the order `controller-first` the plant gets the voltage at once. In the order `parallel` both units step before
+    In the order `controller-first` the plant gets the voltage at once. In the order `parallel` both models step before
     anything is exchanged, so the plant gets the voltage one step late.
     """
     times = step_size * np.arange(round(stop_time / step_size))
@@ -119,7 +119,7 @@ def simulate(
 
 
 def initialize(plant: Fmu, controller: Fmu, options: argparse.Namespace) -> None:
-    """Give both units their parameters and initialize them.
+    """Give both models their parameters and initialize them.
 
     The plant starts at rest in the middle of the range; `flux_error` is what the observer's first flux lacks.
     """

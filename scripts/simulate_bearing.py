@@ -21,7 +21,7 @@ from matplotlib.figure import Figure
 STATE = ["position", "velocity", "flux"]
 ESTIMATE = ["estimate.position", "estimate.velocity", "estimate.flux"]
 
-# Wires: output of one unit, input of the other.
+# Wires: output of one model, input of the other.
 PLANT_TO_CONTROLLER = {
     "position_measured": "position",
     "velocity": "state.velocity",
@@ -55,10 +55,10 @@ def transfer(source: Fmu, target: Fmu, wires: dict[str, str]) -> None:
 
 
 def simulate(plant: Fmu, controller: Fmu, order: str, step_size: float, stop_time: float) -> Trajectory:
-    """Step two initialized units up to `stop_time` with a fixed `step_size`, both in s.
+    """Step two initialized models up to `stop_time` with a fixed `step_size`, both in s.
 
     In the order `controller-first` the plant gets the voltage at once, as in the paper. In the order `parallel` both
-    units step before anything is exchanged, so the plant gets the voltage one step late.
+    models step before anything is exchanged, so the plant gets the voltage one step late.
     """
     times = step_size * np.arange(round(stop_time / step_size))
     rows = []
@@ -77,7 +77,7 @@ def simulate(plant: Fmu, controller: Fmu, order: str, step_size: float, stop_tim
 
 
 def initialize(plant: Fmu, controller: Fmu, options: argparse.Namespace) -> None:
-    """Give both units their parameters and initialize them."""
+    """Give both models their parameters and initialize them."""
     plant.initialize(
         {"initial.position": options.initial_position, "bias_flux": options.bias_flux}, stop_time=options.stop_time
     )

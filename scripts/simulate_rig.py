@@ -19,7 +19,7 @@ from matplotlib import pyplot
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-# Wires: output of one unit, input of the other.
+# Wires: output of one model, input of the other.
 PLANT_TO_CONTROLLER = {"sensor_voltage_measured": "sensor_voltage", "voltage_measured": "voltage_applied"}
 CONTROLLER_TO_PLANT = {"voltage": "voltage"}
 
@@ -57,7 +57,7 @@ def transfer(source: Fmu, target: Fmu, wires: dict[str, str]) -> None:
 
 
 def simulate(plant: Fmu, controller: Fmu, options: argparse.Namespace) -> Trajectory:
-    """Step two initialized units with a fixed step size, the controller first."""
+    """Step two initialized models with a fixed step size, the controller first."""
     times = options.step_size * np.arange(round(options.stop_time / options.step_size))
     rest = plant.get_reals(["sensor_voltage"])[0]
     reference = rest + options.amplitude * np.sin(2.0 * np.pi * options.frequency * times)
@@ -82,7 +82,7 @@ def simulate(plant: Fmu, controller: Fmu, options: argparse.Namespace) -> Trajec
 
 
 def initialize(plant: Fmu, controller: Fmu, options: argparse.Namespace) -> None:
-    """Give both units their parameters and initialize them; what the parameter file says comes last."""
+    """Give both models their parameters and initialize them; what the parameter file says comes last."""
     plant.initialize(
         {"initial.position": options.position, "sensor.noise": options.noise, "sensor.seed": options.seed},
         stop_time=options.stop_time,

@@ -24,7 +24,7 @@ What is allowed has to work, what is forbidden or makes no sense has to be refus
 to be finite, every state has to be restorable, and memory has to come back.
 
 - `cargo test --test fmi ten_million -- --ignored` (optimised, with checks for overflow; `--release` works as well) made
-  {calls:,} calls on {instances:,} instances of {scenarios} kinds (package, unit, interface type), {nested:,} of them
+  {calls:,} calls on {instances:,} instances of {scenarios} kinds (package, model, interface type), {nested:,} of them
   within callbacks: {ok:,} returned OK, {discard:,} Discard, {error:,} Error. 0 crashes, 0 blocks of memory kept, 0
   disagreements but the ones below. The longest call took {longest:.2g} s.
 - `python scripts/check_memory.py` made {memory_calls:,} calls under valgrind: {memory_errors} invalid accesses,

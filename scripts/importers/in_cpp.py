@@ -33,14 +33,14 @@ def step_with_ecos(fmu: Path) -> str:
     outputs = list(real_outputs(fmu, reference))
     rows = []
     with EcosSimulationStructure() as structure:
-        structure.add_model("unit", fmu)
+        structure.add_model("model", fmu)
         with EcosSimulation(structure=structure, step_size=reference.step_size) as simulation:
             assert simulation.init()
             for values in reference.input_rows:
                 for name, value in zip(reference.inputs, values):
-                    simulation.set_real(f"unit::{name}", value)
+                    simulation.set_real(f"model::{name}", value)
                 simulation.step()
-                rows.append([simulation.get_real(f"unit::{name}") for name in outputs])
+                rows.append([simulation.get_real(f"model::{name}") for name in outputs])
     return reference.compare(rows, outputs)
 
 
@@ -52,21 +52,21 @@ def step_with_libcosim(fmu: Path) -> str:
     from libcosimpy.CosimObserver import CosimObserver
     from libcosimpy.CosimSlave import CosimLocalSlave
 
-    slave = CosimLocalSlave(str(fmu), "unit")
+    slave = CosimLocalSlave(str(fmu), "model")
     assert slave.ptr(), get_last_error_message()
     reference = Reference.of(fmu)
     variables = {variable.name: variable for variable in read_model_description(fmu).modelVariables}
     inputs = [variables[name].valueReference for name in reference.inputs]
     outputs = real_outputs(fmu, reference)
     execution = CosimExecution.from_step_size(round(reference.step_size * 1e9))
-    unit = execution.add_local_slave(slave)
+    model = execution.add_local_slave(slave)
     observer, manipulator = CosimObserver.create_last_value(), CosimManipulator.create_override()
     assert execution.add_observer(observer) and execution.add_manipulator(manipulator)
     rows = []
     for values in reference.input_rows:
-        assert manipulator.slave_real_values(unit, inputs, values)
+        assert manipulator.slave_real_values(model, inputs, values)
         assert execution.step()
-        rows.append(list(observer.last_real_values(unit, list(outputs.values()))))
+        rows.append(list(observer.last_real_values(model, list(outputs.values()))))
     return reference.compare(rows, list(outputs))
 
 

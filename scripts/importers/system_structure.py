@@ -53,11 +53,11 @@ class SystemStructure:
 
     @property
     def inner_connections(self) -> list[tuple[str, str, str, str]]:
-        """Those from unit to unit."""
+        """Those from model to model."""
         return [wire for wire in self.connections if wire[0] is not None and wire[2] is not None]
 
     def element(self, kind: str) -> str:
-        """Name of the element whose unit is a `Plant` or a `Controller`."""
+        """Name of the element whose model is a `Plant` or a `Controller`."""
         return next(name for name in self.sources if name.endswith(kind))
 
 

@@ -1,6 +1,6 @@
 """System structure packages in the importers that read them.
 
-All of them step both units and then pass the values on, so each is compared with such a loop of the two FMUs; and each
+All of them step both models and then pass the values on, so each is compared with such a loop of the two FMUs; and each
 has to show the physics: bearing and balls where the loop of the paper has them, and estimates that are right.
 """
 
@@ -43,31 +43,31 @@ class PlainLoop:
         self, steps: int, passes_start_values: bool, parameters: ParameterValues | None = None
     ) -> list[list[float]]:
         """Values of the outputs after each step; `passes_start_values` says whether the first step sees the outputs of
-        the initialization, or zeros. Without `parameters` the units start by themselves as their package says."""
+        the initialization, or zeros. Without `parameters` the models start by themselves as their package says."""
         rows = []
         wires = self.structure.inner_connections
         plant, controller = (self.structure.element(kind) for kind in ("Plant", "Controller"))
         with TemporaryDirectory() as folder, ZipFile(self.package) as archive:
-            units = {name: Fmu(Path(archive.extract(path, folder))) for name, path in self.structure.sources.items()}
+            models = {name: Fmu(Path(archive.extract(path, folder))) for name, path in self.structure.sources.items()}
 
             def passed(to: str) -> dict[str, Value]:
-                return {name: units[element].get(output) for element, output, target, name in wires if target == to}
+                return {name: models[element].get(output) for element, output, target, name in wires if target == to}
 
             own = parameters or {}
-            units[plant].initialize(own.get(plant))
+            models[plant].initialize(own.get(plant))
             # The controller's first estimate may follow from its inputs at the start.
-            units[controller].initialize(own.get(controller, {}) | (passed(controller) if passes_start_values else {}))
-            pending = {name: passed(name) for name in units}
+            models[controller].initialize(own.get(controller, {}) | (passed(controller) if passes_start_values else {}))
+            pending = {name: passed(name) for name in models}
             if not passes_start_values:
                 pending = {name: dict.fromkeys(values, 0.0) for name, values in pending.items()}
             for step in range(steps):
-                for name, unit in units.items():
-                    unit.set(pending[name])
-                    unit.step(step * self.step_size, self.step_size)
-                pending = {name: passed(name) for name in units}
-                rows.append([units[element].get(connector) for element, connector in self.outputs])
-            for unit in units.values():
-                unit.close()
+                for name, model in models.items():
+                    model.set(pending[name])
+                    model.step(step * self.step_size, self.step_size)
+                pending = {name: passed(name) for name in models}
+                rows.append([models[element].get(connector) for element, connector in self.outputs])
+            for model in models.values():
+                model.close()
         return rows
 
     def compare(
@@ -232,7 +232,7 @@ TASKS = [
         "simulate, no step size",
         simulate_with_fmpy_by_default,
         packages=CLOSED,
-        limit=Limit("fmi2DoStep failed", "takes a hundredth of the stop time, 10 ms, for the step, which the units refuse"),
+        limit=Limit("fmi2DoStep failed", "takes a hundredth of the stop time, 10 ms, for the step, which the models refuse"),
     ),
     Task("FMPy", "simulate", simulate_with_fmpy, packages=TWO, limit=Limit("Failed to validate SystemStructure.ssd", "SSP 2.0")),
     Task("ecospy", "simulate", simulate_with_ecos, packages=CLOSED),

@@ -54,7 +54,7 @@ def simulate_co_simulation(fmu: Path) -> str:
 
 
 def simulate_model_exchange(fmu: Path) -> str:
-    """The states, solved by CVode, against the unit's own solution."""
+    """The states, solved by CVode, against the model's own solution."""
     from fmpy import read_model_description
 
     reference = Reference.of(fmu)
@@ -94,23 +94,23 @@ def schedule(fmu: Path) -> str:
     variables = {variable.name: variable for variable in description.modelVariables}
     clock = periodic_clock(description)
     with TemporaryDirectory() as folder:
-        unit = FMU3ScheduledExecution(
-            instanceName="unit",
+        model = FMU3ScheduledExecution(
+            instanceName="model",
             guid=description.guid,
             modelIdentifier=description.scheduledExecution.modelIdentifier,
             unzipDirectory=extract(fmu, folder),
         )
-        unit.instantiate()
-        unit.enterInitializationMode()
-        unit.exitInitializationMode()
+        model.instantiate()
+        model.enterInitializationMode()
+        model.exitInitializationMode()
         inputs = [variables[name].valueReference for name in reference.inputs]
         rows = []
         for time, values in zip(reference.input_times, reference.input_rows):
-            unit.setFloat64(inputs, values)
-            unit.activateModelPartition(clock, time)
-            rows.append([get(unit, variables[name]) for name in reference.outputs])
-        unit.terminate()
-        unit.freeInstance()
+            model.setFloat64(inputs, values)
+            model.activateModelPartition(clock, time)
+            rows.append([get(model, variables[name]) for name in reference.outputs])
+        model.terminate()
+        model.freeInstance()
     return reference.compare(rows)
 
 
@@ -121,10 +121,10 @@ def periodic_clock(description: object) -> int:
     return clocks[0].valueReference
 
 
-def get(unit: object, variable: object) -> float:
+def get(model: object, variable: object) -> float:
     """Value of a variable of any type of FMI 3.0, as a number."""
     kind = "Int64" if variable.type == "Enumeration" else variable.type
-    return float(getattr(unit, f"get{kind}")([variable.valueReference])[0])
+    return float(getattr(model, f"get{kind}")([variable.valueReference])[0])
 
 
 TASKS = [

@@ -16,12 +16,12 @@ def step_fmi2(fmu: Path) -> str:
     from fmuloader.fmi2 import Fmi2Slave, Fmi2Type
 
     description = read_model_description(fmu)
-    unit = Fmi2Slave(fmu, model_identifier=description.coSimulation.modelIdentifier)
-    unit.instantiate("unit", Fmi2Type.CO_SIMULATION, guid=description.guid)
-    unit.setup_experiment(start_time=0.0)
-    unit.enter_initialization_mode()
-    unit.exit_initialization_mode()
-    return drive(unit, fmu, description, unit.set_real, unit.do_step, GETTERS)
+    model = Fmi2Slave(fmu, model_identifier=description.coSimulation.modelIdentifier)
+    model.instantiate("model", Fmi2Type.CO_SIMULATION, guid=description.guid)
+    model.setup_experiment(start_time=0.0)
+    model.enter_initialization_mode()
+    model.exit_initialization_mode()
+    return drive(model, fmu, description, model.set_real, model.do_step, GETTERS)
 
 
 def step_fmi3(fmu: Path) -> str:
@@ -29,11 +29,11 @@ def step_fmi3(fmu: Path) -> str:
     from fmuloader.fmi3 import Fmi3Slave
 
     description = read_model_description(fmu)
-    unit = Fmi3Slave(fmu, model_identifier=description.coSimulation.modelIdentifier)
-    unit.instantiate_co_simulation("unit", instantiation_token=description.guid)
-    unit.enter_initialization_mode(start_time=0.0)
-    unit.exit_initialization_mode()
-    return drive(unit, fmu, description, unit.set_float64, unit.do_step, GETTERS_3)
+    model = Fmi3Slave(fmu, model_identifier=description.coSimulation.modelIdentifier)
+    model.instantiate_co_simulation("model", instantiation_token=description.guid)
+    model.enter_initialization_mode(start_time=0.0)
+    model.exit_initialization_mode()
+    return drive(model, fmu, description, model.set_float64, model.do_step, GETTERS_3)
 
 
 def schedule(fmu: Path) -> str:
@@ -43,30 +43,30 @@ def schedule(fmu: Path) -> str:
 
     description = read_model_description(fmu)
     clock = periodic_clock(description)
-    unit = Fmi3Slave(fmu, model_identifier=description.scheduledExecution.modelIdentifier)
-    unit.instantiate_scheduled_execution("unit", instantiation_token=description.guid)
-    unit.enter_initialization_mode(start_time=0.0)
-    unit.exit_initialization_mode()
+    model = Fmi3Slave(fmu, model_identifier=description.scheduledExecution.modelIdentifier)
+    model.instantiate_scheduled_execution("model", instantiation_token=description.guid)
+    model.enter_initialization_mode(start_time=0.0)
+    model.exit_initialization_mode()
 
     def tick(time: float, _: float) -> None:
-        unit.activate_model_partition(clock, time)
+        model.activate_model_partition(clock, time)
 
-    return drive(unit, fmu, description, unit.set_float64, tick, GETTERS_3)
+    return drive(model, fmu, description, model.set_float64, tick, GETTERS_3)
 
 
-def drive(unit, fmu: Path, description, set_reals, advance, getters: dict[str, str]) -> str:  # noqa: ANN001
+def drive(model, fmu: Path, description, set_reals, advance, getters: dict[str, str]) -> str:  # noqa: ANN001
     """Set the reference input, advance, get all outputs."""
     reference = Reference.of(fmu)
     variables = {variable.name: variable for variable in description.modelVariables}
     inputs = [variables[name].valueReference for name in reference.inputs]
-    outputs = [(getattr(unit, getters[variables[name].type]), variables[name]) for name in reference.outputs]
+    outputs = [(getattr(model, getters[variables[name].type]), variables[name]) for name in reference.outputs]
     rows = []
     for time, values in zip(reference.input_times, reference.input_rows):
         set_reals(inputs, values)
         advance(time, reference.step_size)
         rows.append([float(get([variable.valueReference])[0]) for get, variable in outputs])
-    unit.terminate()
-    unit.free_instance()
+    model.terminate()
+    model.free_instance()
     return reference.compare(rows)
 
 

@@ -1,7 +1,7 @@
 //! The floating-point environment: the host's outside, that of IEEE 754 inside.
 //!
 //! Some hosts let division by zero, overflow or invalid operations trap, or round otherwise than to nearest, or flush
-//! small numbers to zero. The units compute as everybody does: an infinity that is dropped later is no error, and the
+//! small numbers to zero. The models compute as everybody does: an infinity that is dropped later is no error, and the
 //! same bits come out in every host. Both standards allow to change the control word of the thread as long as it is
 //! restored before a function returns and before it calls back (FMI 2.0.5, section 2.1; FMI 3.0.2, section 2.2.1).
 //!

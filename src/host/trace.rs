@@ -6,7 +6,7 @@ use super::instance::Instance;
 /// Sampled variables over time, one column per variable.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Trace {
-    /// `unit.variable`, for example `plant.position`.
+    /// `model.variable`, for example `plant.position`.
     pub names: Vec<String>,
     /// The unit of each column as the model description has it.
     pub units: Vec<Option<String>>,
@@ -17,7 +17,7 @@ pub struct Trace {
 }
 
 impl Trace {
-    /// The column called `unit.variable`.
+    /// The column called `model.variable`.
     pub fn column(&self, name: &str) -> Option<&[f64]> {
         let place = self.names.iter().position(|candidate| candidate == name)?;
         self.columns.get(place).map(Vec::as_slice)

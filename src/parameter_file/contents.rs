@@ -16,7 +16,8 @@ use crate::model::{Description, StartValues, models};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ParameterFile {
-    /// Name of the model.
+    /// Name of the model; older files call it `unit`.
+    #[serde(alias = "unit")]
     pub model: String,
     #[serde(deserialize_with = "unique_keys::map")]
     pub values: Map<String, Value>,
@@ -156,7 +157,7 @@ mod tests {
     use std::fs;
 
     fn file(values: Value, units: Value) -> ParameterFile {
-        let text = json!({ "unit": "MagneticBearingController", "values": values, "units": units });
+        let text = json!({ "model": "MagneticBearingController", "values": values, "units": units });
         serde_json::from_value(text).unwrap()
     }
 

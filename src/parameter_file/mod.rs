@@ -2,7 +2,7 @@
 //!
 //! ```json
 //! {
-//!   "unit": "MaglevRigController",
+//!   "model": "MaglevRigController",
 //!   "values": { "observer.kind": 1, "observer.bandwidth": 180.0 },
 //!   "units": { "observer.kind": "item linear", "observer.bandwidth": "rad/s" },
 //!   "provenance": { "program": "maglev-fmu 0.1.0" }

@@ -43,7 +43,7 @@ mod tests {
         ParameterFile::read(&path)
     }
 
-    const PLAIN: &str = r#"{"unit": "MagneticBearingController", "values": {"sample_time": 0.001}}"#;
+    const PLAIN: &str = r#"{"model": "MagneticBearingController", "values": {"sample_time": 0.001}}"#;
 
     /// Guards: "expected value at line 1 column 1" about files that Windows' editors wrote.
     #[test]
@@ -62,19 +62,28 @@ mod tests {
             (r#""values": {}, "units": {"a": "s", "a": "s"}"#, "a"),
             (r#""values": {}, "provenance": [{"deep": {"b": 1, "b": 1}}]"#, "b"),
         ] {
-            let text = format!(r#"{{"unit": "MagneticBearingController", {place}}}"#);
+            let text = format!(r#"{{"model": "MagneticBearingController", {place}}}"#);
             let message = with_causes(&read_bytes(text.as_bytes()).unwrap_err());
             assert!(message.contains(&format!("the key \"{key}\" is there twice")), "{message}");
             assert!(message.contains("line 1"), "{message}");
         }
-        let twice = r#"{"unit": "A", "unit": "B", "values": {}}"#;
-        assert!(with_causes(&read_bytes(twice.as_bytes()).unwrap_err()).contains("duplicate field"));
+        for twice in [r#"{"model": "A", "model": "B", "values": {}}"#, r#"{"model": "A", "unit": "A", "values": {}}"#] {
+            let message = with_causes(&read_bytes(twice.as_bytes()).unwrap_err());
+            assert!(message.contains("duplicate field `model`"), "{message}");
+        }
+    }
+
+    #[test]
+    fn older_files_call_the_model_a_unit() {
+        let older = PLAIN.replace("\"model\"", "\"unit\"");
+        assert_ne!(older, PLAIN);
+        assert_eq!(read_bytes(older.as_bytes()).unwrap(), read_bytes(PLAIN.as_bytes()).unwrap());
     }
 
     /// Guards: an unknown key of the file itself that breaks the line of the message.
     #[test]
     fn unknown_keys_are_printed_escaped() {
-        let text = r#"{"unit": "MaglevRigController", "values": {}, "a\nerror: b\u001b[2J\u202e": 1}"#;
+        let text = r#"{"model": "MaglevRigController", "values": {}, "a\nerror: b\u001b[2J\u202e": 1}"#;
         let message = with_causes(&read_bytes(text.as_bytes()).unwrap_err());
         assert!(message.contains(r"unknown field `a\nerror: b\u{1b}[2J\u{202e}`"), "{message}");
         assert!(!message.contains('\n'), "{message}");

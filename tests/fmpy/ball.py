@@ -43,7 +43,7 @@ def rest(time: float) -> float:
 
 @dataclass
 class BallLoop:
-    """Two units that step together."""
+    """Two models that step together."""
 
     plant: Fmu
     controller: Fmu

@@ -17,7 +17,7 @@ CONTROLLER_OUTPUTS = ["voltage", *ESTIMATE]
 
 @dataclass
 class Loop:
-    """Two units that step together."""
+    """Two models that step together."""
 
     plant: Fmu
     controller: Fmu

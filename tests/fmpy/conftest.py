@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from bearing import Loop
 from cosimulation import Fmu
-from packages import BEARING_UNITS, FMI_VERSIONS, SAMPLED_UNITS, UNITS, all_fmus, clocked_path, fmu_path
+from packages import BEARING_MODELS, FMI_VERSIONS, SAMPLED_MODELS, MODELS, all_fmus, clocked_path, fmu_path
 
 # Same condition as in requirements.txt.
 if sys.platform != "linux" or platform.machine() != "x86_64" or sys.version_info >= (3, 15):
@@ -20,8 +20,8 @@ if sys.platform != "linux" or platform.machine() != "x86_64" or sys.version_info
 
 def pytest_configure() -> None:
     """Stop at once when there is nothing to test."""
-    paths = [fmu_path(version, unit) for version in FMI_VERSIONS for unit in UNITS]
-    paths += [clocked_path(unit) for unit in SAMPLED_UNITS]
+    paths = [fmu_path(version, model) for version in FMI_VERSIONS for model in MODELS]
+    paths += [clocked_path(model) for model in SAMPLED_MODELS]
     missing = [str(path) for path in paths if not path.is_file()]
     if missing:
         raise pytest.UsageError(
@@ -56,7 +56,7 @@ def open_loop(open_fmu: Callable[[Path], Fmu]) -> Callable[..., Loop]:
     """Load plant and controller of the bearing for the time of a test and initialize them."""
 
     def open_both(fmi_version: int, plant: dict | None = None, controller: dict | None = None) -> Loop:
-        loop = Loop(*(open_fmu(fmu_path(fmi_version, unit)) for unit in BEARING_UNITS))
+        loop = Loop(*(open_fmu(fmu_path(fmi_version, model)) for model in BEARING_MODELS))
         loop.initialize(plant, controller)
         return loop
 

@@ -34,9 +34,9 @@ def run_program(*arguments: object, check: bool = True) -> subprocess.CompletedP
 def native_trace(steps: int, plant: Values, controller: Values) -> tuple[list[str], list[Row]]:
     """The loop without FMI: names as `plant.position`, and per sample the bit patterns of all real outputs."""
     options: list[str] = []
-    for unit, values in [("--plant", plant), ("--controller", controller)]:
+    for model, values in [("--plant", plant), ("--controller", controller)]:
         for name, value in values.items():
-            options += [unit, f"{name}={str(value).lower() if isinstance(value, bool) else value}"]
+            options += [model, f"{name}={str(value).lower() if isinstance(value, bool) else value}"]
     output = run_program("trace", "rig", "--steps", steps, *options).stdout
     reader = csv.reader(output.splitlines())
     names = next(reader)
@@ -53,7 +53,7 @@ class RigLoop:
 
     def run(self, steps: int, names: list[str]) -> list[list[float]]:
         """Per sample the plant's values before it moves on and the controller's after its tick."""
-        columns = {unit: [name.split(".", 1)[1] for name in names if name.startswith(unit)] for unit in ("plant", "controller")}
+        columns = {model: [name.split(".", 1)[1] for name in names if name.startswith(model)] for model in ("plant", "controller")}
         rows = []
         for step in range(steps):
             time = step * SAMPLE_TIME
@@ -69,8 +69,8 @@ class RigLoop:
 def open_rig(
     open_fmu: Callable[[Path], Fmu], fmi_version: int, plant: Values | None = None, controller: Values | None = None
 ) -> RigLoop:
-    units = [open_fmu(fmu_path(fmi_version, unit)) for unit in (RIG_PLANT, RIG_CONTROLLER)]
-    return RigLoop(*units, plant or {}, controller or {})
+    models = [open_fmu(fmu_path(fmi_version, model)) for model in (RIG_PLANT, RIG_CONTROLLER)]
+    return RigLoop(*models, plant or {}, controller or {})
 
 
 def bits(values: list[float]) -> Row:

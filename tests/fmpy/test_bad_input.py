@@ -11,7 +11,7 @@ import pytest
 from bearing import Loop, bits
 from cosimulation import Fmu
 from fmpy.fmi1 import FMICallException
-from packages import BEARING_UNITS, CONTROLLER, PLANT, UNITS, fmu_path
+from packages import BEARING_MODELS, CONTROLLER, PLANT, MODELS, fmu_path
 
 ERROR = 3  # status of both FMI versions
 DONE = 50  # samples before the offence
@@ -23,17 +23,17 @@ class Offence(NamedTuple):
     """A call that must be refused, and what the message must hold."""
 
     name: str
-    unit: str
+    model: str
     call: Callable[[Fmu], object]
     message: list[str]
 
 
-def setting(unit: str, variable: str, value: float | int, message: list[str]) -> Offence:
-    return Offence(f"{variable}={value}", unit, lambda fmu: fmu.set({variable: value}), [variable, *message])
+def setting(model: str, variable: str, value: float | int, message: list[str]) -> Offence:
+    return Offence(f"{variable}={value}", model, lambda fmu: fmu.set({variable: value}), [variable, *message])
 
 
-def stepping(unit: str, time: float, step_size: float, message: list[str]) -> Offence:
-    return Offence(f"{unit}-step-{time}-{step_size}", unit, lambda fmu: fmu.step(time, step_size), message)
+def stepping(model: str, time: float, step_size: float, message: list[str]) -> Offence:
+    return Offence(f"{model}-step-{time}-{step_size}", model, lambda fmu: fmu.step(time, step_size), message)
 
 
 def call_by_reference(fmu: Fmu, verb: str, *arguments: list) -> object:
@@ -41,8 +41,8 @@ def call_by_reference(fmu: Fmu, verb: str, *arguments: list) -> object:
     return getattr(fmu.slave, verb + ("Real" if fmu.fmi_version == 2 else "Float64"))(*arguments)
 
 
-def reading(unit: str, references: list[int], message: list[str]) -> Offence:
-    return Offence(f"{unit}-get-{references}", unit, lambda fmu: call_by_reference(fmu, "get", references), message)
+def reading(model: str, references: list[int], message: list[str]) -> Offence:
+    return Offence(f"{model}-get-{references}", model, lambda fmu: call_by_reference(fmu, "get", references), message)
 
 
 REAL_INPUTS = [
@@ -53,8 +53,8 @@ REAL_INPUTS = [
     (CONTROLLER, "state.flux", "Wb"),
 ]
 NOT_FINITE = [
-    setting(unit, name, value, [f"{text} {unit_name}", "finite"])
-    for unit, name, unit_name in REAL_INPUTS
+    setting(model, name, value, [f"{text} {unit_name}", "finite"])
+    for model, name, unit_name in REAL_INPUTS
     for value, text in [(NAN, "NaN"), (INFINITY, "inf"), (-INFINITY, "-inf")]
 ]
 OUT_OF_RANGE = [
@@ -74,7 +74,7 @@ NOT_SETTABLE = [
     setting(PLANT, "initial.position", 0.0, ["fixed parameter", "step mode"]),
     setting(PLANT, "sensor.seed", 2, ["fixed parameter", "step mode"]),
     setting(PLANT, "position", 0.0, ["is a continuous state", "step mode"]),
-    setting(PLANT, "epsilon", 0.0, ["calculated by the unit"]),
+    setting(PLANT, "epsilon", 0.0, ["calculated by the model"]),
     setting(CONTROLLER, "time", 0.0, ["independent variable"]),
 ]
 WRONG_REFERENCE = [
@@ -89,8 +89,8 @@ WRONG_REFERENCE = [
     Offence("get-another-type", CONTROLLER, lambda fmu: fmu.slave.getBoolean([1]), ["position", "a real variable"]),
 ]
 WRONG_TIME = [
-    stepping(unit, *arguments)
-    for unit in BEARING_UNITS
+    stepping(model, *arguments)
+    for model in BEARING_MODELS
     for arguments in [
         (TIME, 0.0, ["communicationStepSize", "0 s", "greater than 0"]),
         (TIME, -1e-3, ["communicationStepSize", "-0.001 s", "greater than 0"]),
@@ -126,7 +126,7 @@ def test_refused_and_unchanged(
     twin, disturbed = open_loop(fmi_version), open_loop(fmi_version)
     twin.run(DONE)
     disturbed.run(DONE)
-    victim = disturbed.plant if offence.unit == PLANT else disturbed.controller
+    victim = disturbed.plant if offence.model == PLANT else disturbed.controller
     # Clocks can be read at events only.
     readable = [name for name, variable in victim.variables.items() if variable.type != "Clock"]
     before = [victim.get(name) for name in readable]
@@ -135,21 +135,21 @@ def test_refused_and_unchanged(
     assert [bits(row) for row in disturbed.run(DONE)] == [bits(row) for row in twin.run(DONE)]
 
 
-@pytest.mark.parametrize("unit", UNITS)
+@pytest.mark.parametrize("model", MODELS)
 def test_no_step_before_initialization(
-    fmi_version: int, unit: str, open_fmu: Callable[[Path], Fmu], messages: list[str]
+    fmi_version: int, model: str, open_fmu: Callable[[Path], Fmu], messages: list[str]
 ) -> None:
-    fmu = open_fmu(fmu_path(fmi_version, unit))
+    fmu = open_fmu(fmu_path(fmi_version, model))
     assert_refused(lambda: fmu.step(0.0, 1e-3), messages, ["instantiated"])
     fmu.initialize()
     fmu.step(0.0, 1e-3)
 
 
-@pytest.mark.parametrize("unit", UNITS)
+@pytest.mark.parametrize("model", MODELS)
 def test_no_step_after_termination_but_after_reset(
-    fmi_version: int, unit: str, open_fmu: Callable[[Path], Fmu], messages: list[str]
+    fmi_version: int, model: str, open_fmu: Callable[[Path], Fmu], messages: list[str]
 ) -> None:
-    fmu = open_fmu(fmu_path(fmi_version, unit))
+    fmu = open_fmu(fmu_path(fmi_version, model))
     fmu.initialize()
     fmu.slave.terminate()
     assert_refused(lambda: fmu.step(0.0, 1e-3), messages, ["terminated"])
@@ -192,16 +192,16 @@ def log_to(messages: list[str]) -> Callable[..., None]:
     return lambda *arguments: messages.append(arguments[-1].decode())
 
 
-@pytest.mark.parametrize("unit", UNITS)
+@pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("token", ["", "{00000000-0000-0000-0000-000000000000}"])
 def test_a_wrong_token_is_no_instance(
-    fmi_version: int, unit: str, token: str, open_fmu: Callable[[Path], Fmu], messages: list[str]
+    fmi_version: int, model: str, token: str, open_fmu: Callable[[Path], Fmu], messages: list[str]
 ) -> None:
-    fmu = open_fmu(fmu_path(fmi_version, unit))
+    fmu = open_fmu(fmu_path(fmi_version, model))
     component, fmu.slave.guid = fmu.slave.component, token
     arguments = {"callbacks": fmu.slave.callbacks} if fmi_version == 2 else {"logMessage": log_to(messages)}
     with pytest.raises(Exception, match="Failed to instantiate"):
         fmu.slave.instantiate(**arguments)
     fmu.slave.component = component
     assert f'"{token}"' in messages[-1]
-    assert unit in messages[-1]
+    assert model in messages[-1]

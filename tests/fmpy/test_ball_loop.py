@@ -11,15 +11,15 @@ import pytest
 from ball import CARRYING_FLUX, BallLoop, column, deviation, flux_error, rest, root_mean_square, sinusoids
 from cosimulation import Fmu
 from fmpy.fmi1 import FMICallException
-from packages import BALL_UNITS, fmu_path
+from packages import BALL_MODELS, fmu_path
 
-PLANT, CONTROLLER = BALL_UNITS
+PLANT, CONTROLLER = BALL_MODELS
 OpenBall = Callable[..., BallLoop]
 
 
 @pytest.fixture
 def open_ball(open_fmu: Callable[[Path], Fmu]) -> OpenBall:
-    """Load and initialize both units; the observer's flux starts 10 % too small."""
+    """Load and initialize both models; the observer's flux starts 10 % too small."""
 
     def open_both(
         fmi_version: int,
@@ -28,8 +28,8 @@ def open_ball(open_fmu: Callable[[Path], Fmu]) -> OpenBall:
         reference: Callable[[float], float] = sinusoids,
         sample_time: float = 1e-4,
     ) -> BallLoop:
-        units = (open_fmu(fmu_path(fmi_version, unit)) for unit in BALL_UNITS)
-        loop = BallLoop(*units, reference, sample_time)
+        models = (open_fmu(fmu_path(fmi_version, model)) for model in BALL_MODELS)
+        loop = BallLoop(*models, reference, sample_time)
         loop.initialize(plant or {}, {"observer.initial.flux": 0.9 * CARRYING_FLUX, **(controller or {})})
         return loop
 
@@ -125,7 +125,7 @@ def test_noise_has_the_given_spread_and_repeats(fmi_version: int, open_fmu: Call
 
 
 @pytest.mark.parametrize(
-    ("unit", "values", "message"),
+    ("model", "values", "message"),
     [
         (PLANT, {"voltage": math.nan}, ["voltage", "NaN V", "finite"]),
         (PLANT, {"force": math.inf}, ["force", "inf N", "finite"]),
@@ -141,13 +141,13 @@ def test_noise_has_the_given_spread_and_repeats(fmi_version: int, open_fmu: Call
 )
 def test_bad_values_are_refused_with_reason(
     fmi_version: int,
-    unit: str,
+    model: str,
     values: dict,
     message: list[str],
     open_fmu: Callable[[Path], Fmu],
     messages: list[str],
 ) -> None:
-    fmu = open_fmu(fmu_path(fmi_version, unit))
+    fmu = open_fmu(fmu_path(fmi_version, model))
     with pytest.raises(FMICallException):
         fmu.set(values)
     assert [part for part in message if part not in messages[-1]] == [], messages

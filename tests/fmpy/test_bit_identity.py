@@ -12,7 +12,7 @@ import ball
 import pytest
 from bearing import CONTROLLER_OUTPUTS, STATE, Loop, bits
 from cosimulation import Fmu, Value
-from packages import BALL_UNITS, FMI_VERSIONS, REPOSITORY, fmu_path
+from packages import BALL_MODELS, FMI_VERSIONS, REPOSITORY, fmu_path
 
 STEPS = 10_000
 Trajectory = list[tuple[int, ...]]
@@ -51,10 +51,10 @@ def trace(
 ) -> Trajectory:
     """What the command `trace` prints of a system, each number as its 64-bit pattern."""
     command: list[str | Path] = [executable(), "trace", system, "--steps", str(steps)]
-    for unit, values in [("plant", plant), ("controller", controller)]:
+    for model, values in [("plant", plant), ("controller", controller)]:
         for name, value in values.items():
             text = str(value).lower() if isinstance(value, bool) else str(value)
-            command += [f"--{unit}", f"{name}={text}"]
+            command += [f"--{model}", f"{name}={text}"]
     output = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     return [tuple(int(row[column], 16) for column in columns) for row in csv.DictReader(output.splitlines())]
 
@@ -102,7 +102,7 @@ def test_ball_through_fmi_equals_native(
     columns = [f"plant.{name}" for name in ball.PLANT_OUTPUTS]
     columns += [f"controller.{name}" for name in ball.CONTROLLER_OUTPUTS]
     native = trace("ball", plant, {**controller, "reference": target}, STEPS, columns)
-    loop = ball.BallLoop(*(open_fmu(fmu_path(fmi_version, unit)) for unit in BALL_UNITS), lambda _: target)
+    loop = ball.BallLoop(*(open_fmu(fmu_path(fmi_version, model)) for model in BALL_MODELS), lambda _: target)
     loop.initialize(plant, {"reference": target, **controller})
     through_fmi = [bits(loop.step()) for _ in range(STEPS)]
     assert len(native) == STEPS

@@ -52,7 +52,7 @@ def test_page_tells_what_was_found(outcomes: dict[tuple[Task, Path], Outcome]) -
 def test_every_program_has_something_to_do() -> None:
     """A misspelt interface or package name would leave cells out without a word."""
     used = {task.program for task, _ in CELLS}
-    wanted = {task.program for task in [*conformance.UNIT_TASKS, *systems.TASKS]}
+    wanted = {task.program for task in [*conformance.MODEL_TASKS, *systems.TASKS]}
     if ALL_PROGRAMS:
         assert used == wanted
     for fmu in all_fmus():

@@ -15,21 +15,21 @@ from packages import CONTROLLER, PLANT, fmu_path
 STEPS = 2000
 
 
-class FmuloaderUnit:
+class FmuloaderModel:
     """An instance in fmuloader with the methods that `Loop` needs."""
 
-    def __init__(self, fmi_version: int, unit: str) -> None:
+    def __init__(self, fmi_version: int, model: str) -> None:
         self.fmi_version = fmi_version
-        path = fmu_path(fmi_version, unit)
+        path = fmu_path(fmi_version, model)
         description = read_model_description(path)
         self.references = {variable.name: variable.valueReference for variable in description.modelVariables}
         if fmi_version == 2:
-            self.slave = Fmi2Slave(path, model_identifier=unit)
-            self.slave.instantiate(unit, Fmi2Type.CO_SIMULATION, guid=description.guid)
+            self.slave = Fmi2Slave(path, model_identifier=model)
+            self.slave.instantiate(model, Fmi2Type.CO_SIMULATION, guid=description.guid)
             self.get, self.put = self.slave.get_real, self.slave.set_real
         else:
-            self.slave = Fmi3Slave(path, model_identifier=unit)
-            self.slave.instantiate_co_simulation(unit, instantiation_token=description.guid)
+            self.slave = Fmi3Slave(path, model_identifier=model)
+            self.slave.instantiate_co_simulation(model, instantiation_token=description.guid)
             self.get, self.put = self.slave.get_float64, self.slave.set_float64
 
     def initialize(self, values: dict[str, Value] | None) -> None:
@@ -59,7 +59,7 @@ class FmuloaderUnit:
 @pytest.mark.parametrize("order", ["controller-first", "parallel"])
 def test_fmuloader_equals_fmpy(fmi_version: int, order: str, open_loop: Callable[..., Loop]) -> None:
     plant, controller = {"initial.position": 0.001}, {"controller.initial_voltage": -100.0}
-    other = Loop(FmuloaderUnit(fmi_version, PLANT), FmuloaderUnit(fmi_version, CONTROLLER))
+    other = Loop(FmuloaderModel(fmi_version, PLANT), FmuloaderModel(fmi_version, CONTROLLER))
     other.initialize(plant, controller)
     rows = [bits(row) for row in other.run(STEPS, order)]
     other.plant.close()

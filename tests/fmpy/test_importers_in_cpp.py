@@ -1,6 +1,6 @@
 """Importers written in C++, which exist as Python packages for some platforms only (see conftest.py).
 
-Both step all units, then exchange values, and neither can set enumerations, so the controller keeps its start values.
+Both step all models, then exchange values, and neither can set enumerations, so the controller keeps its start values.
 """
 
 from __future__ import annotations
@@ -45,8 +45,8 @@ def through_ecos(fmi_version: int) -> Trajectory:
     from ecospy import EcosSimulation, EcosSimulationStructure
 
     with EcosSimulationStructure() as structure:
-        for unit in (PLANT, CONTROLLER):
-            structure.add_model(unit, fmu_path(fmi_version, unit))
+        for model in (PLANT, CONTROLLER):
+            structure.add_model(model, fmu_path(fmi_version, model))
         for source, target in WIRES:
             structure.make_real_connection("::".join(source), "::".join(target))
         with EcosSimulation(structure=structure, step_size=SAMPLE_TIME) as simulation:
@@ -68,13 +68,13 @@ def through_libcosim() -> Trajectory:
     log_output_level(CosimLogLevel.WARNING)
     nanoseconds = round(SAMPLE_TIME * 1e9)
     execution = CosimExecution.from_step_size(nanoseconds)
-    units = [PLANT, CONTROLLER]
-    slaves = [CosimLocalSlave(str(fmu_path(2, unit)), unit) for unit in units]
-    index = {unit: execution.add_local_slave(slave) for unit, slave in zip(units, slaves)}
+    models = [PLANT, CONTROLLER]
+    slaves = [CosimLocalSlave(str(fmu_path(2, model)), model) for model in models]
+    index = {model: execution.add_local_slave(slave) for model, slave in zip(models, slaves)}
     reference = {
-        (unit, variable.name): variable.valueReference
-        for unit in units
-        for variable in read_model_description(fmu_path(2, unit)).modelVariables
+        (model, variable.name): variable.valueReference
+        for model in models
+        for variable in read_model_description(fmu_path(2, model)).modelVariables
     }
     observer = CosimObserver.create_last_value()
     assert execution.add_observer(observer)

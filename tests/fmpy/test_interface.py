@@ -8,14 +8,14 @@ import pytest
 from cosimulation import enumeration_items
 from fmpy import read_model_description
 from fmpy.model_description import ModelDescription, ModelVariable
-from packages import BALL_UNITS, CONTROLLER, PLANT, fmu_path
+from packages import BALL_MODELS, CONTROLLER, PLANT, fmu_path
 
-BALL_PLANT, BALL_CONTROLLER = BALL_UNITS
+BALL_PLANT, BALL_CONTROLLER = BALL_MODELS
 CARRYING_FLUX = 0.010298006650609622  # Wb
 
 
 class Expected(NamedTuple):
-    """What a variable must be; `unit` of an enumeration is its items, `start` None where the unit computes it."""
+    """What a variable must be; `unit` of an enumeration is its items, `start` None where the model computes it."""
 
     kind: str
     causality: str
@@ -176,7 +176,7 @@ INTERFACE = {
         "gravity": parameter("m/s2", 9.81),
     },
 }
-CASES = [(unit, name) for unit, variables in INTERFACE.items() for name in variables]
+CASES = [(model, name) for model, variables in INTERFACE.items() for name in variables]
 KINDS = {
     "Real": "real",
     "Float64": "real",
@@ -206,17 +206,17 @@ BASE_UNITS = {
 }
 
 
-def description(fmi_version: int, unit: str) -> ModelDescription:
-    return read_model_description(fmu_path(fmi_version, unit))
+def description(fmi_version: int, model: str) -> ModelDescription:
+    return read_model_description(fmu_path(fmi_version, model))
 
 
-def find(fmi_version: int, unit: str, name: str) -> ModelVariable:
-    return next(v for v in description(fmi_version, unit).modelVariables if v.name == name)
+def find(fmi_version: int, model: str, name: str) -> ModelVariable:
+    return next(v for v in description(fmi_version, model).modelVariables if v.name == name)
 
 
-@pytest.mark.parametrize(("unit", "name"), CASES)
-def test_variable(fmi_version: int, unit: str, name: str) -> None:
-    variable, expected = find(fmi_version, unit, name), INTERFACE[unit][name]
+@pytest.mark.parametrize(("model", "name"), CASES)
+def test_variable(fmi_version: int, model: str, name: str) -> None:
+    variable, expected = find(fmi_version, model, name), INTERFACE[model][name]
     assert KINDS[variable.type] == expected.kind
     assert variable.causality == expected.causality
     if expected.kind == "real":
@@ -231,38 +231,38 @@ def test_variable(fmi_version: int, unit: str, name: str) -> None:
         assert float(variable.start) == expected.start
 
 
-@pytest.mark.parametrize("unit", INTERFACE)
-def test_every_variable_is_described(fmi_version: int, unit: str) -> None:
-    assert [v.name for v in description(fmi_version, unit).modelVariables if not v.description] == []
+@pytest.mark.parametrize("model", INTERFACE)
+def test_every_variable_is_described(fmi_version: int, model: str) -> None:
+    assert [v.name for v in description(fmi_version, model).modelVariables if not v.description] == []
 
 
-@pytest.mark.parametrize("unit", INTERFACE)
-def test_units_are_defined_by_the_right_base_units(fmi_version: int, unit: str) -> None:
-    for definition in description(fmi_version, unit).unitDefinitions:
+@pytest.mark.parametrize("model", INTERFACE)
+def test_units_are_defined_by_the_right_base_units(fmi_version: int, model: str) -> None:
+    for definition in description(fmi_version, model).unitDefinitions:
         base = definition.baseUnit
         assert (base.kg, base.m, base.s, base.A) == BASE_UNITS[definition.name], definition.name
         assert (base.K, base.mol, base.cd, base.rad) == (0, 0, 0, 0)
         assert (base.factor, base.offset) == (1.0, 0.0)
 
 
-@pytest.mark.parametrize("unit", INTERFACE)
-def test_real_parameters_have_a_range_around_their_start(fmi_version: int, unit: str) -> None:
-    for variable in description(fmi_version, unit).modelVariables:
+@pytest.mark.parametrize("model", INTERFACE)
+def test_real_parameters_have_a_range_around_their_start(fmi_version: int, model: str) -> None:
+    for variable in description(fmi_version, model).modelVariables:
         if variable.causality == "parameter" and KINDS[variable.type] in ("real", "integer"):
             assert float(variable.min) <= float(variable.start) <= float(variable.max), variable.name
 
 
-@pytest.mark.parametrize("unit", INTERFACE)
-def test_value_references_with_start_are_unique(fmi_version: int, unit: str) -> None:
-    references = [v.valueReference for v in description(fmi_version, unit).modelVariables if v.start is not None]
+@pytest.mark.parametrize("model", INTERFACE)
+def test_value_references_with_start_are_unique(fmi_version: int, model: str) -> None:
+    references = [v.valueReference for v in description(fmi_version, model).modelVariables if v.start is not None]
     assert len(references) == len(set(references))
 
 
-@pytest.mark.parametrize("unit", INTERFACE)
-def test_both_versions_describe_the_same_variables(unit: str) -> None:
+@pytest.mark.parametrize("model", INTERFACE)
+def test_both_versions_describe_the_same_variables(model: str) -> None:
     # FMI 2.0 has no clocks.
     two, three = (
-        [(v.name, v.causality, v.variability) for v in description(n, unit).modelVariables if v.type != "Clock"]
+        [(v.name, v.causality, v.variability) for v in description(n, model).modelVariables if v.type != "Clock"]
         for n in (2, 3)
     )
     assert two == three

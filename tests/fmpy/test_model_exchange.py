@@ -14,7 +14,7 @@ from packages import all_fmus, fmu_path
 class Run(NamedTuple):
     """A plant with parameters and input signals, as rows of (time, value, ...)."""
 
-    unit: str
+    model: str
     start_values: dict[str, float | str]
     inputs: list[str]
     signal: list[tuple[float, ...]]
@@ -84,14 +84,14 @@ def test_every_plant_offers_both_interfaces_and_is_run_here() -> None:
     for path in plants():
         description = read_model_description(path)
         assert description.coSimulation is not None
-        assert path.stem in {run.unit for run in RUNS.values()}, f"no run of {path.stem}"
+        assert path.stem in {run.model for run in RUNS.values()}, f"no run of {path.stem}"
     assert {path.parent.name for path in plants()} == {"fmi2", "fmi3"}
 
 
 @pytest.mark.parametrize("name", RUNS)
 def test_cvode_gives_the_result_of_co_simulation(fmi_version: int, name: str) -> None:
     run = RUNS[name]
-    path = fmu_path(fmi_version, run.unit)
+    path = fmu_path(fmi_version, run.model)
     solved = simulate(run, path, "ModelExchange", relative_tolerance=1e-10, record_events=False)
     stepped = simulate(run, path, "CoSimulation")
     np.testing.assert_allclose(solved["time"], stepped["time"], rtol=0, atol=1e-12)
@@ -115,7 +115,7 @@ def test_the_rigs_current_flows_and_its_sensor_is_read(fmi_version: int) -> None
     readings: dict[float, np.ndarray] = {}
     for sample_time in [0.0, 0.01]:
         result = simulate_fmu(
-            fmu_path(fmi_version, run.unit),
+            fmu_path(fmi_version, run.model),
             fmi_type="ModelExchange",
             stop_time=0.1,
             output_interval=1e-3,

@@ -38,7 +38,7 @@ def test_tuning_is_reproducible(parameter_file: Path, tmp_path: Path) -> None:
 
 def test_values_carry_units_and_provenance(parameter_file: Path, open_fmu: OpenFmu) -> None:
     content = json.loads(parameter_file.read_text())
-    assert content["unit"] == RIG_CONTROLLER
+    assert content["model"] == RIG_CONTROLLER
     assert content["units"].keys() == content["values"].keys()
     assert content["units"]["observer.kind"] == f"item {parameter_file.stem}"
     controller = open_fmu(fmu_path(3, RIG_CONTROLLER))
@@ -85,10 +85,10 @@ def test_build_makes_them_start_values_that_the_library_honours(
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        ('{"unit": "MaglevRigController", "values": {"observer.bandwith": 1}}', "has no variable observer.bandwith"),
-        ('{"unit": "MaglevRigController", "values": {"sample_time": 5.0}}', "sample_time = 5 s: expected"),
-        ('{"unit": "MaglevRigController", "values": {"observer.kind": "luenberger"}}', "expected one of linear"),
-        ('{"unit": "Pendulum", "values": {}}', "no unit Pendulum"),
+        ('{"model": "MaglevRigController", "values": {"observer.bandwith": 1}}', "has no variable observer.bandwith"),
+        ('{"model": "MaglevRigController", "values": {"sample_time": 5.0}}', "sample_time = 5 s: expected"),
+        ('{"model": "MaglevRigController", "values": {"observer.kind": "luenberger"}}', "expected one of linear"),
+        ('{"model": "Pendulum", "values": {}}', "no model Pendulum"),
         ("[]", "is no parameter file"),
     ],
 )

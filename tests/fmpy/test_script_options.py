@@ -93,7 +93,7 @@ def test_one_step_is_a_run(run: Callable[..., Outcome], script: str, tmp_path: P
 
 @pytest.mark.parametrize("script", SCRIPTS)
 def test_a_run_ends_with_a_whole_step(run: Callable[..., Outcome], script: str, tmp_path: Path) -> None:
-    """Guards: a last step beyond the stop time that the units were given, which they refuse."""
+    """Guards: a last step beyond the stop time that the models were given, which they refuse."""
     done = run(script, "--stop-time", "0.0016", "--step-size", "1e-3", "--out", tmp_path / "two.png")
     assert (done.status, done.message) == (0, "")
 
@@ -106,7 +106,7 @@ def test_other_numbers_are_finite(run: Callable[..., Outcome], script: str, opti
 
 
 @pytest.mark.parametrize(("script", "option"), [(script, option) for script in SCRIPTS for option in NUMBERS[script]])
-def test_numbers_out_of_range_are_refused_by_the_units_or_run(run: Callable[..., Outcome], script: str, option: str) -> None:
+def test_numbers_out_of_range_are_refused_by_the_models_or_run(run: Callable[..., Outcome], script: str, option: str) -> None:
     done = run(script, f"{option}=1e300", *SHORT)
     assert done.status == 0 or "failed with status 3" in done.message, done.message
 
@@ -190,7 +190,7 @@ def test_a_full_standard_output_is_an_error(script: str) -> None:
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")
 @pytest.mark.parametrize("script", ["simulate_ball", "simulate_rig"])
-def test_a_refusal_by_a_unit_is_told_where_errors_go(script: str) -> None:
+def test_a_refusal_by_a_model_is_told_where_errors_go(script: str) -> None:
     """Guards: reasons that FMPy printed to standard output, or lost with a traceback if that is full."""
     command = [sys.executable, str(REPOSITORY / "scripts" / f"{script}.py"), "--dist", str(dist()), "--noise=-5", *SHORT]
     for path in [os.devnull, "/dev/full"]:
@@ -223,25 +223,26 @@ def parameter_file(path: Path, text: str | bytes) -> Path:
     return path
 
 
-UNIT = '"unit": "MaglevRigController"'
+MODEL = '"model": "MaglevRigController"'
 
 
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        (f'{{{UNIT}, "values": {{"observer.bandwidth": 1, "observer.bandwidth": 2}}}}', "'observer.bandwidth' is there twice"),
-        (f'{{{UNIT}, "values": {{"observer.bandwidth": NaN}}}}', "NaN is no number of JSON"),
-        (f'{{{UNIT}, "values": {{"observer.bandwidth": "fast"}}}}', "observer.bandwidth = 'fast': expected a value of type Float64"),
-        (f'{{{UNIT}, "values": {{"observer.bandwidth": [1]}}}}', "observer.bandwidth = [1]: expected a value"),
-        (f'{{{UNIT}, "values": {{"observer.bandwidth": true}}}}', "observer.bandwidth = True: expected a value of type Float64"),
-        (f'{{{UNIT}, "values": {{"observer.kind": true}}}}', "observer.kind = True: expected a value of type Enumeration"),
-        (f'{{{UNIT}, "values": {{"observer.kind": 99999999999999999999}}}}', "observer.kind = 99999999999999999999: expected a value"),
-        (f'{{{UNIT}, "values": {{"observer.bandwidth": 1}}, "units": {{"observer.bandwidth": "kg"}}}}', "observer.bandwidth is given in 'kg': expected 1/s"),
-        (f'{{{UNIT}, "values": {{"controller.kind": 2.5}}, "units": {{"controller.kind": "item pid"}}}}', "controller.kind = 2.5: expected one of 1 (pid), 2"),
-        (f'{{{UNIT}, "values": {{}}, "units": {{"sample_time": "s"}}}}', "'sample_time' has a unit and no value"),
-        (f'{{{UNIT}, "values": {{"\\u001b[2J": 1}}}}', r"has no variable '\x1b[2J'"),
-        ('{"unit": "\\u001b[2J", "values": {}}', r"is for '\x1b[2J': expected a file for MaglevRigController"),
-        (f'{{{UNIT}, "values": {{"observer.kind": "\\nlinear"}}}}', r"observer.kind = \nlinear: expected one of"),
+        (f'{{{MODEL}, "values": {{"observer.bandwidth": 1, "observer.bandwidth": 2}}}}', "'observer.bandwidth' is there twice"),
+        (f'{{{MODEL}, "values": {{"observer.bandwidth": NaN}}}}', "NaN is no number of JSON"),
+        (f'{{{MODEL}, "values": {{"observer.bandwidth": "fast"}}}}', "observer.bandwidth = 'fast': expected a value of type Float64"),
+        (f'{{{MODEL}, "values": {{"observer.bandwidth": [1]}}}}', "observer.bandwidth = [1]: expected a value"),
+        (f'{{{MODEL}, "values": {{"observer.bandwidth": true}}}}', "observer.bandwidth = True: expected a value of type Float64"),
+        (f'{{{MODEL}, "values": {{"observer.kind": true}}}}', "observer.kind = True: expected a value of type Enumeration"),
+        (f'{{{MODEL}, "values": {{"observer.kind": 99999999999999999999}}}}', "observer.kind = 99999999999999999999: expected a value"),
+        (f'{{{MODEL}, "values": {{"observer.bandwidth": 1}}, "units": {{"observer.bandwidth": "kg"}}}}', "observer.bandwidth is given in 'kg': expected 1/s"),
+        (f'{{{MODEL}, "values": {{"controller.kind": 2.5}}, "units": {{"controller.kind": "item pid"}}}}', "controller.kind = 2.5: expected one of 1 (pid), 2"),
+        (f'{{{MODEL}, "values": {{}}, "units": {{"sample_time": "s"}}}}', "'sample_time' has a unit and no value"),
+        (f'{{{MODEL}, "values": {{"\\u001b[2J": 1}}}}', r"has no variable '\x1b[2J'"),
+        ('{"model": "\\u001b[2J", "values": {}}', r"is for '\x1b[2J': expected a file for MaglevRigController"),
+        (f'{{{MODEL}, "values": {{"observer.kind": "\\nlinear"}}}}', r"observer.kind = \nlinear: expected one of"),
+        (f'{{{MODEL}, "unit": "MaglevRigController", "values": {{}}}}', "both name the model: expected one of them"),
         ("[" * 100_000, "cannot read the parameter file"),
         (b"\xff\xfe{\x00}\x00", "cannot read the parameter file"),
         (" " * (1 << 20) + "{}", "larger than the 1048576 bytes"),
@@ -254,17 +255,25 @@ def test_parameter_files_are_explained(run: Callable[..., Outcome], text: str | 
 
 def test_whole_numbers_may_have_a_decimal_point(run: Callable[..., Outcome], tmp_path: Path) -> None:
     values = '"values": {"observer.kind": 2.0, "observer.substeps": 1e0}'
-    path = parameter_file(tmp_path / "file.json", f"{{{UNIT}, {values}}}")
+    path = parameter_file(tmp_path / "file.json", f"{{{MODEL}, {values}}}")
     done = run("simulate_rig", "--parameters", path, "--stop-time", "0.01")
     assert done.status == 0, done.message
 
 
 def test_a_byte_order_mark_is_no_part_of_a_parameter_file(run: Callable[..., Outcome], tmp_path: Path) -> None:
-    text = json.dumps({"unit": "MaglevRigController", "values": {"observer.bandwidth": 150.0}})
+    text = json.dumps({"model": "MaglevRigController", "values": {"observer.bandwidth": 150.0}})
     marked = parameter_file(tmp_path / "marked.json", b"\xef\xbb\xbf" + text.encode())
     plain = parameter_file(tmp_path / "plain.json", text)
     said = [run("simulate_rig", "--parameters", path, "--stop-time", "0.1") for path in (marked, plain)]
     assert [done.status for done in said] == [0, 0], said[0].message
+    assert said[0].output == said[1].output
+
+
+def test_older_parameter_files_call_the_model_a_unit(run: Callable[..., Outcome], tmp_path: Path) -> None:
+    text = f'{{{MODEL}, "values": {{"observer.bandwidth": 150.0}}}}'
+    paths = [parameter_file(tmp_path / "new.json", text), parameter_file(tmp_path / "old.json", text.replace('"model"', '"unit"'))]
+    said = [run("simulate_rig", "--parameters", path, "--stop-time", "0.1") for path in paths]
+    assert [done.status for done in said] == [0, 0], said[1].message
     assert said[0].output == said[1].output
 
 

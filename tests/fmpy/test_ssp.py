@@ -1,4 +1,4 @@
-"""System structure packages: what is changed in one reaches the units in every importer, and inputs drive the loops."""
+"""System structure packages: what is changed in one reaches the models in every importer, and inputs drive the loops."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def test_changed_parameters_matter(changed: Path) -> None:
     assert rows[0] != rows[1]
 
 
-def test_parameter_sets_repeat_what_the_units_start_with() -> None:
+def test_parameter_sets_repeat_what_the_models_start_with() -> None:
     """So that a package runs the same loop in importers that apply the sets and in those that do not."""
     for package in PACKAGES:
         loop = systems.PlainLoop(package)
@@ -192,7 +192,7 @@ def test_steps_that_lose_a_loop_are_refused_with_a_reason(package: Path) -> None
 
 @pytest.mark.parametrize("package", PACKAGES, ids=lambda path: path.stem)
 def test_every_edition_runs_the_same_loop(package: Path) -> None:
-    """No program here runs SSP 2.0, so its wires and its units for FMI 3.0 are run by the plain loop."""
+    """No program here runs SSP 2.0, so its wires and its models for FMI 3.0 are run by the plain loop."""
     closed = systems.PlainLoop(package)
     rows = closed.rows(closed.steps, passes_start_values=False)
     for edition in (systems.DRIVEN, systems.TWO):

@@ -11,11 +11,11 @@ import pytest
 from bearing import bits
 from cosimulation import Fmu
 from fmpy.fmi1 import FMICallException
-from packages import CONTROLLER, FMI_VERSIONS, PLANT, REPOSITORY, UNITS, fmu_path
+from packages import CONTROLLER, FMI_VERSIONS, PLANT, REPOSITORY, MODELS, fmu_path
 
 STEP_SIZE = 1e-3  # s
 STEPS = 200
-# Parameters that bring as much hidden state into play as possible: noise generators, a filter with memory. Other units run
+# Parameters that bring as much hidden state into play as possible: noise generators, a filter with memory. Other models run
 # with their start values.
 PARAMETERS = {
     PLANT: {"sensor.noise": 1e-7, "process.flux_noise": 1e-6},
@@ -56,8 +56,8 @@ def digits(row: tuple[int, ...]) -> str:
     return " ".join(f"{number:016x}" for number in row)
 
 
-def started(fmu: Fmu, unit: str) -> Fmu:
-    fmu.initialize(PARAMETERS.get(unit, {}))
+def started(fmu: Fmu, model: str) -> Fmu:
+    fmu.initialize(PARAMETERS.get(model, {}))
     return fmu
 
 
@@ -76,9 +76,9 @@ def continue_from(fmu: Fmu, state: bytes, first: int, last: int) -> list[tuple[i
     return [step(fmu, k) for k in range(first, last)]
 
 
-@pytest.mark.parametrize("unit", UNITS)
-def test_a_restored_run_repeats_itself(fmi_version: int, unit: str, open_fmu: Callable[[Path], Fmu]) -> None:
-    fmu = started(open_fmu(fmu_path(fmi_version, unit)), unit)
+@pytest.mark.parametrize("model", MODELS)
+def test_a_restored_run_repeats_itself(fmi_version: int, model: str, open_fmu: Callable[[Path], Fmu]) -> None:
+    fmu = started(open_fmu(fmu_path(fmi_version, model)), model)
     for k in range(STEPS):
         step(fmu, k)
     state = fmu.slave.getFMUState()
@@ -91,19 +91,19 @@ def test_a_restored_run_repeats_itself(fmi_version: int, unit: str, open_fmu: Ca
     assert len(set(runs[0])) == STEPS, "the run stands still"
 
 
-@pytest.mark.parametrize("unit", UNITS)
+@pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("other_version", FMI_VERSIONS, ids=lambda version: f"to-fmi{version}")
 def test_another_process_and_version_continue(
-    fmi_version: int, other_version: int, unit: str, open_fmu: Callable[[Path], Fmu], tmp_path: Path
+    fmi_version: int, other_version: int, model: str, open_fmu: Callable[[Path], Fmu], tmp_path: Path
 ) -> None:
-    fmu = started(open_fmu(fmu_path(fmi_version, unit)), unit)
+    fmu = started(open_fmu(fmu_path(fmi_version, model)), model)
     for k in range(STEPS):
         step(fmu, k)
     file = tmp_path / "state"
     file.write_bytes(saved_bytes(fmu))
     assert file.stat().st_size <= 4096
     straight = [digits(step(fmu, k)) for k in range(STEPS, 2 * STEPS)]
-    arguments = [fmu_path(other_version, unit), file, str(STEPS), str(2 * STEPS)]
+    arguments = [fmu_path(other_version, model), file, str(STEPS), str(2 * STEPS)]
     process = subprocess.run(
         [sys.executable, "-c", CONTINUE, *arguments],
         env={"PYTHONPATH": f"{REPOSITORY / 'scripts'}:{REPOSITORY / 'tests' / 'fmpy'}"},
@@ -115,15 +115,15 @@ def test_another_process_and_version_continue(
     assert process.stdout.split("\n")[:-1] == straight
 
 
-@pytest.mark.parametrize("unit", UNITS)
+@pytest.mark.parametrize("model", MODELS)
 def test_what_is_no_state_is_refused(
-    fmi_version: int, unit: str, open_fmu: Callable[[Path], Fmu], messages: list[str]
+    fmi_version: int, model: str, open_fmu: Callable[[Path], Fmu], messages: list[str]
 ) -> None:
-    fmu = started(open_fmu(fmu_path(fmi_version, unit)), unit)
+    fmu = started(open_fmu(fmu_path(fmi_version, model)), model)
     step(fmu, 0)
     state = saved_bytes(fmu)
     before = bits(reals(fmu))
-    other = next(name for name in UNITS if name != unit)
+    other = next(name for name in MODELS if name != model)
     foreign = saved_bytes(started(open_fmu(fmu_path(fmi_version, other)), other))
     damaged = bytearray(state)
     damaged[len(state) // 2] ^= 1
@@ -131,7 +131,7 @@ def test_what_is_no_state_is_refused(
         (state[:-1], "bytes: expected"),
         (state + b"\0", "bytes: expected"),
         (bytes(damaged), "damaged"),
-        (foreign, f"a state of {other}: expected {unit}"),
+        (foreign, f"a state of {other}: expected {model}"),
         (b"?" * len(state), "the mark of a saved state"),
     ]:
         messages.clear()

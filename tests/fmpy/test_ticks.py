@@ -43,60 +43,60 @@ class Fmpy:
 
     def __init__(self, folder: str, description: object) -> None:
         identifier = description.scheduledExecution.modelIdentifier
-        self.unit = FMU3ScheduledExecution(
+        self.model = FMU3ScheduledExecution(
             guid=description.guid, unzipDirectory=folder, modelIdentifier=identifier, instanceName="scheduled"
         )
-        self.unit.instantiate()
-        self.put, self.get = self.unit.setFloat64, self.unit.getFloat64
-        self.activate = self.unit.activateModelPartition
+        self.model.instantiate()
+        self.put, self.get = self.model.setFloat64, self.model.getFloat64
+        self.activate = self.model.activateModelPartition
 
     def initialize(self, tick: int) -> float:
         """Interval of the clock `tick` [s]."""
-        self.unit.enterInitializationMode()
+        self.model.enterInitializationMode()
         interval, qualifier = c_double(), c_int()
-        self.unit.fmi3GetIntervalDecimal(self.unit.component, (c_uint32 * 1)(tick), 1, interval, qualifier)
+        self.model.fmi3GetIntervalDecimal(self.model.component, (c_uint32 * 1)(tick), 1, interval, qualifier)
         assert qualifier.value == Fmi3IntervalQualifier.INTERVAL_CHANGED
-        self.unit.exitInitializationMode()
+        self.model.exitInitializationMode()
         return interval.value
 
     def close(self) -> None:
-        self.unit.terminate()
-        self.unit.freeInstance()
+        self.model.terminate()
+        self.model.freeInstance()
 
 
 class Fmuloader:
     """fmuloader, which passes no callbacks."""
 
     def __init__(self, _: str, description: object) -> None:
-        self.unit = Fmi3Slave(clocked_path(CONTROLLER), model_identifier=CONTROLLER)
-        self.unit.instantiate_scheduled_execution("scheduled", instantiation_token=description.guid)
-        self.put, self.get = self.unit.set_float64, self.unit.get_float64
-        self.activate = self.unit.activate_model_partition
+        self.model = Fmi3Slave(clocked_path(CONTROLLER), model_identifier=CONTROLLER)
+        self.model.instantiate_scheduled_execution("scheduled", instantiation_token=description.guid)
+        self.put, self.get = self.model.set_float64, self.model.get_float64
+        self.activate = self.model.activate_model_partition
 
     def initialize(self, tick: int) -> float:
-        self.unit.enter_initialization_mode(start_time=0.0)
-        [interval], _ = self.unit.get_interval_decimal([tick])
-        [counter], [resolution], _ = self.unit.get_interval_fraction([tick])
+        self.model.enter_initialization_mode(start_time=0.0)
+        [interval], _ = self.model.get_interval_decimal([tick])
+        [counter], [resolution], _ = self.model.get_interval_fraction([tick])
         assert counter / resolution == interval
-        assert self.unit.get_shift_decimal([tick]) == [0.0]
-        self.unit.exit_initialization_mode()
+        assert self.model.get_shift_decimal([tick]) == [0.0]
+        self.model.exit_initialization_mode()
         return interval
 
     def close(self) -> None:
-        self.unit.terminate()
-        self.unit.free_instance()
+        self.model.terminate()
+        self.model.free_instance()
 
 
-def scheduled(unit: Fmpy | Fmuloader, by_name: dict[str, int]) -> Trajectory:
+def scheduled(model: Fmpy | Fmuloader, by_name: dict[str, int]) -> Trajectory:
     """Rows after each tick."""
-    interval = unit.initialize(by_name["tick"])
+    interval = model.initialize(by_name["tick"])
     rows = []
     for k in range(round(STOP_TIME / interval)):
         time = k * interval
-        unit.put([by_name["position"]], [position(time)])
-        unit.activate(by_name["tick"], time)
-        rows.append(bits(unit.get([by_name[name] for name in OUTPUTS])))
-    unit.close()
+        model.put([by_name["position"]], [position(time)])
+        model.activate(by_name["tick"], time)
+        rows.append(bits(model.get([by_name[name] for name in OUTPUTS])))
+    model.close()
     return rows
 
 
@@ -131,17 +131,17 @@ def test_schedulers_get_the_ticks_of_steps(importer: type, controller: tuple[str
     by_name = references(description)
     rows = scheduled(importer(folder, description), by_name)
     assert len(set(rows)) == len(rows) == 500
-    unit = Fmi3Slave(clocked_path(CONTROLLER), model_identifier=CONTROLLER)
-    unit.instantiate_co_simulation("stepped", instantiation_token=description.guid)
-    unit.enter_initialization_mode(start_time=0.0)
-    unit.exit_initialization_mode()
+    model = Fmi3Slave(clocked_path(CONTROLLER), model_identifier=CONTROLLER)
+    model.instantiate_co_simulation("stepped", instantiation_token=description.guid)
+    model.enter_initialization_mode(start_time=0.0)
+    model.exit_initialization_mode()
     expected = []
     for k in range(len(rows)):
-        unit.set_float64([by_name["position"]], [position(k * 1e-3)])
-        unit.do_step(k * 1e-3, 1e-3)
-        expected.append(bits(unit.get_float64([by_name[name] for name in OUTPUTS])))
-    unit.terminate()
-    unit.free_instance()
+        model.set_float64([by_name["position"]], [position(k * 1e-3)])
+        model.do_step(k * 1e-3, 1e-3)
+        expected.append(bits(model.get_float64([by_name[name] for name in OUTPUTS])))
+    model.terminate()
+    model.free_instance()
     assert rows == expected
 
 
@@ -177,13 +177,13 @@ def test_plain_package_refuses_events_and_names_the_other(tmp_path: Path) -> Non
     path = fmu_path(3, CONTROLLER)
     description = read_model_description(path)
     messages = []
-    unit = FMU3Slave(
+    model = FMU3Slave(
         guid=description.guid,
         unzipDirectory=extract(path, unzipdir=str(tmp_path)),
         modelIdentifier=CONTROLLER,
         instanceName="plain",
     )
     with pytest.raises(Exception, match="instantiate"):
-        unit.instantiate(eventModeUsed=True, logMessage=lambda *arguments: messages.append(arguments[-1].decode()))
+        model.instantiate(eventModeUsed=True, logMessage=lambda *arguments: messages.append(arguments[-1].decode()))
     assert any(f"fmi3-clocked/{CONTROLLER}.fmu" in message for message in messages), messages
-    unit.freeLibrary()
+    model.freeLibrary()

@@ -25,7 +25,7 @@ pub fn units_of_measure<'a>(
     distinct(quantities(variables).into_iter().map(|quantity| quantity.unit))
 }
 
-/// Enumerations of a unit's variables, each once, in the order of their first use.
+/// Enumerations of a model's variables, each once, in the order of their first use.
 pub fn enumerations(description: &Description) -> Vec<&'static Enumeration> {
     distinct(description.variables.iter().filter_map(|variable| match variable.kind {
         Kind::Enumeration(enumeration) => Some(enumeration),

@@ -80,9 +80,9 @@ fn keys_are_told_in_one_line() {
     let directory = tempfile::tempdir().unwrap();
     let model = json!("MaglevRigController");
     for file in [
-        json!({ "unit": model, "values": {}, "a\nerror: b\r\u{1b}[2J": 1 }),
-        json!({ "unit": model, "values": { "a\nerror: b\r\u{1b}[2J": 1 } }),
-        json!({ "unit": "a\nerror: b\r\u{1b}[2J", "values": {} }),
+        json!({ "model": model, "values": {}, "a\nerror: b\r\u{1b}[2J": 1 }),
+        json!({ "model": model, "values": { "a\nerror: b\r\u{1b}[2J": 1 } }),
+        json!({ "model": "a\nerror: b\r\u{1b}[2J", "values": {} }),
     ] {
         fs::write(directory.path().join("file.json"), file.to_string()).unwrap();
         let (status, message) = maglev_fmu(directory.path(), &words("build --parameters file.json"));
@@ -123,7 +123,7 @@ fn no_package_starts_with_parameters_that_do_not_fit() {
         let said = refusal(model, values);
         let values: serde_json::Map<_, _> =
             values.iter().map(|(name, value)| ((*name).to_owned(), json!(value))).collect();
-        let file = json!({ "unit": model.description.name, "values": &values });
+        let file = json!({ "model": model.description.name, "values": &values });
         fs::write(directory.path().join("misfit.json"), file.to_string()).unwrap();
         let arguments = format!("build --parameters misfit.json --library {}", library.display());
         let expected = (Some(1), format!("error: misfit.json: {said}\n"));
