@@ -1,13 +1,11 @@
-//! Which models there are: the library's own, which [`super`] lists, and those that a program adds.
+//! Which models there are: the library's own and those that a program adds.
 
-#[cfg(feature = "tools")]
-use super::REGISTRATIONS;
 use super::memory::{OutOfMemory, try_boxed};
 #[cfg(feature = "tools")]
 use super::structure::{Dependencies, Structured};
 #[cfg(feature = "added-models")]
 use super::system::System;
-use super::{Description, Edition, MODELS, Model};
+use super::{Description, Edition, Model};
 
 /// A model that can be made from nothing but its table.
 #[derive(Debug)]
@@ -63,17 +61,26 @@ impl Registration {
 /// The list of the library's models. The icon of each is the drawing in `assets` with the model's name.
 macro_rules! models {
     ($($name:ident: $model:ident = $module:ident;)*) => {
-        $(pub static $name: ModelType = ModelType::of::<$model>(&$module::DESCRIPTION);)*
+        $(pub static $name: ModelType = ModelType::of::<super::$module::$model>(&super::$module::DESCRIPTION);)*
 
         /// All models the shared library offers.
         pub static MODELS: &[&ModelType] = &[$(&$name),*];
 
         #[cfg(feature = "tools")]
-        static REGISTRATIONS: &[Registration] = &[$(Registration::of::<$model>(
+        static REGISTRATIONS: &[Registration] = &[$(Registration::of::<super::$module::$model>(
             &$name,
             include_str!(concat!("../../assets/", stringify!($model), ".svg")),
         )),*];
     };
+}
+
+models! {
+    MAGNETIC_BEARING_PLANT: MagneticBearingPlant = magnetic_bearing_plant;
+    MAGNETIC_BEARING_CONTROLLER: MagneticBearingController = magnetic_bearing_controller;
+    LEVITATED_BALL_PLANT: LevitatedBallPlant = levitated_ball_plant;
+    LEVITATED_BALL_CONTROLLER: LevitatedBallController = levitated_ball_controller;
+    MAGLEV_RIG_PLANT: MaglevRigPlant = maglev_rig_plant;
+    MAGLEV_RIG_CONTROLLER: MaglevRigController = maglev_rig_controller;
 }
 
 /// Models that the running program adds to those of the library, collected by the linker: the functions of both standards

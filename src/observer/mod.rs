@@ -5,6 +5,7 @@ mod ball_observer_settings;
 mod bearing_observer;
 mod current_course;
 pub mod drem;
+mod estimate;
 pub mod extended_state;
 pub mod extended_state_exact;
 pub mod factored_covariance;
@@ -30,33 +31,5 @@ mod step_length;
 pub mod windowed_newton;
 
 pub use bearing_observer::{BearingObserver, BearingObserverSettings};
-
-use crate::plant::magnetic_bearing::State;
-
-/// Relative size of the last flux correction up to which an estimate counts as converged.
-const CONVERGED: f64 = 1e-6;
-
-/// Result of one sample.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimate {
-    /// State at the newest sample.
-    pub state: State,
-    /// Largest component of Y - H(w) \[m\] after the last iteration, of the reduced-order observer the residual of
-    /// (7), of the Kalman filter the size of the innovation.
-    pub residual: f64,
-    /// Iterations made, at most d.
-    pub iterations: u32,
-    /// Whether the last iteration still moved the flux by less than a millionth of its size; of the Kalman filter
-    /// whether the innovation fits its standard deviation.
-    pub converged: bool,
-}
-
-/// Maximum norm of finite numbers' differences, finite also when one overflows.
-#[inline]
-fn largest_magnitude<const N: usize>(differences: [f64; N]) -> f64 {
-    let larger = |largest: f64, difference: &f64| {
-        let magnitude = difference.abs();
-        if magnitude > largest { magnitude } else { largest }
-    };
-    differences.iter().fold(0.0, larger).min(f64::MAX)
-}
+pub use estimate::Estimate;
+use estimate::{CONVERGED, largest_magnitude};

@@ -67,7 +67,9 @@ mod tests {
             assert!(message.contains(&format!("the key \"{key}\" is there twice")), "{message}");
             assert!(message.contains("line 1"), "{message}");
         }
-        for twice in [r#"{"model": "A", "model": "B", "values": {}}"#, r#"{"model": "A", "unit": "A", "values": {}}"#] {
+        for twice in
+            [r#"{"model": "A", "model": "B", "values": {}}"#, r#"{"model": "A", "unit": "A", "values": {}}"#]
+        {
             let message = with_causes(&read_bytes(twice.as_bytes()).unwrap_err());
             assert!(message.contains("duplicate field `model`"), "{message}");
         }

@@ -4,9 +4,5 @@ mod observer_and_law;
 mod parameters;
 mod table;
 
-use super::sampled_controller::SampledController;
-use observer_and_law::BallObserverAndLaw;
+pub use observer_and_law::LevitatedBallController;
 pub use table::DESCRIPTION;
-
-/// The controller as a model.
-pub type LevitatedBallController = SampledController<BallObserverAndLaw, { table::COUNT }>;

@@ -5,12 +5,15 @@ use super::table::*;
 use crate::controller::ball_feedback_linearisation::BallFeedbackLinearisation;
 use crate::controller::saturate;
 use crate::model::controller_choices::Feedback;
-use crate::model::sampled_controller::{ObserverAndLaw, Sample};
+use crate::model::sampled_controller::{ObserverAndLaw, Sample, SampledController};
 use crate::model::{Description, LogSink, ModelError, Topic};
 use crate::observer::ball_observer::{BallEstimate, BallObserver};
 use crate::plant::levitated_ball::State;
 use crate::signal::{BallReferenceFilter, SmoothReference};
 use serde::{Deserialize, Serialize};
+
+/// The controller as a model.
+pub type LevitatedBallController = SampledController<BallObserverAndLaw, COUNT>;
 
 /// What a tick costs at most \[s\], see [`crate::model::work`].
 const COST_OF_TICK: f64 = 0.8e-6;

@@ -2,7 +2,7 @@
 
 use super::table::*;
 use crate::model::Description;
-use crate::model::continuous_plant::{Motion, PlantEquations};
+use crate::model::continuous_plant::{ContinuousPlant, Motion, PlantEquations};
 use crate::model::end_stop_events::indicators;
 #[cfg(feature = "tools")]
 use crate::model::end_stop_events::{cause_of_contact, imposed};
@@ -11,6 +11,9 @@ use crate::plant::end_stops::{Contact, rate_in_contact, settled, transition};
 use crate::plant::levitated_ball::{BallConstants, Drive, DrivenBall, LevitatedBall, State};
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
+
+/// The plant as a model.
+pub type LevitatedBallPlant = ContinuousPlant<LevitatedBallEquations, COUNT, 3, 2>;
 
 /// What a step of the integrator costs \[s\], see [`crate::model::work`].
 const COST_OF_SUBSTEP: f64 = 250e-9;

@@ -3,9 +3,5 @@
 mod equations;
 mod table;
 
-use super::continuous_plant::ContinuousPlant;
-use equations::LevitatedBallEquations;
+pub use equations::LevitatedBallPlant;
 pub use table::DESCRIPTION;
-
-/// The plant as a model.
-pub type LevitatedBallPlant = ContinuousPlant<LevitatedBallEquations, { table::COUNT }, 3, 2>;

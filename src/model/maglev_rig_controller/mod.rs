@@ -4,9 +4,5 @@ mod observer_and_law;
 mod parameters;
 mod table;
 
-use super::sampled_controller::SampledController;
-use observer_and_law::RigObserverAndLaw;
+pub use observer_and_law::MaglevRigController;
 pub use table::DESCRIPTION;
-
-/// The controller as a model.
-pub type MaglevRigController = SampledController<RigObserverAndLaw, { table::COUNT }>;

@@ -6,12 +6,15 @@ use super::parameters::{
 use super::table::*;
 use crate::controller::digital_pid::DigitalPid;
 use crate::controller::saturate_between;
-use crate::model::sampled_controller::{ObserverAndLaw, Sample};
+use crate::model::sampled_controller::{ObserverAndLaw, Sample, SampledController};
 use crate::model::{Description, LogSink, ModelError, Topic};
 use crate::observer::extended_state::ExtendedState;
 use crate::observer::rig_observer::{RigObserver, RigStart};
 use crate::signal::reference_filter::{Reference, ReferenceFilter};
 use serde::{Deserialize, Serialize};
+
+/// The controller as a model.
+pub type MaglevRigController = SampledController<RigObserverAndLaw, COUNT>;
 
 /// What observer, reference filter and law remember from tick to tick.
 #[derive(Clone, Serialize, Deserialize)]

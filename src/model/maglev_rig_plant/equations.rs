@@ -2,7 +2,7 @@
 
 use super::table::*;
 use crate::model::Description;
-use crate::model::continuous_plant::{Motion, PlantEquations};
+use crate::model::continuous_plant::{ContinuousPlant, Motion, PlantEquations};
 use crate::model::end_stop_events::indicators;
 #[cfg(feature = "tools")]
 use crate::model::end_stop_events::{cause_of_contact, imposed};
@@ -12,6 +12,9 @@ use crate::plant::maglev_rig::{HeldBall, LONGEST_SUBSTEP, MaglevRig, PositionSen
 use crate::plant::maglev_rig_ramp::RampedBall;
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
+
+/// The plant as a model.
+pub type MaglevRigPlant = ContinuousPlant<MaglevRigEquations, COUNT, 2, 2>;
 
 /// What a step of the integrator costs \[s\], see [`crate::model::work`].
 const COST_OF_SUBSTEP: f64 = 200e-9;

@@ -3,9 +3,5 @@
 mod equations;
 mod table;
 
-use super::continuous_plant::ContinuousPlant;
-use equations::MaglevRigEquations;
+pub use equations::MaglevRigPlant;
 pub use table::DESCRIPTION;
-
-/// The plant as a model.
-pub type MaglevRigPlant = ContinuousPlant<MaglevRigEquations, { table::COUNT }, 2, 2>;

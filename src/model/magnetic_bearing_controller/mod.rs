@@ -4,9 +4,5 @@ mod observer_and_law;
 mod parameters;
 mod table;
 
-use super::sampled_controller::SampledController;
-use observer_and_law::BearingObserverAndLaw;
+pub use observer_and_law::MagneticBearingController;
 pub use table::DESCRIPTION;
-
-/// The controller as a model.
-pub type MagneticBearingController = SampledController<BearingObserverAndLaw, { table::COUNT }>;

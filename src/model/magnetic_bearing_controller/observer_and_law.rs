@@ -4,11 +4,14 @@ use super::parameters::{cost_of_tick, initial_estimate, law, observer_settings};
 use super::table::*;
 use crate::controller::{BearingLaw, saturate};
 use crate::model::controller_choices::Feedback;
-use crate::model::sampled_controller::{ObserverAndLaw, Sample};
+use crate::model::sampled_controller::{ObserverAndLaw, Sample, SampledController};
 use crate::model::{Description, LogSink, Topic};
 use crate::observer::{BearingObserver, Estimate};
 use crate::plant::magnetic_bearing::State;
 use serde::{Deserialize, Serialize};
+
+/// The controller as a model.
+pub type MagneticBearingController = SampledController<BearingObserverAndLaw, COUNT>;
 
 /// What observer and law remember from tick to tick.
 #[derive(Clone, Serialize, Deserialize)]

@@ -2,12 +2,15 @@
 
 use super::table::*;
 use crate::model::Description;
-use crate::model::continuous_plant::{Motion, PlantEquations, ProcessNoise};
+use crate::model::continuous_plant::{ContinuousPlant, Motion, PlantEquations, ProcessNoise};
 use crate::model::magnetic_bearing::map;
 use crate::model::quantity::MAGNETIC_FLUX;
 use crate::plant::magnetic_bearing::{MagneticBearing, State};
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
+
+/// The plant as a model.
+pub type MagneticBearingPlant = ContinuousPlant<MagneticBearingEquations, COUNT, 3, 1>;
 
 /// Hysteresis of the flux's sign, in units of the nominal flux: an event indicator must not be zero after an event.
 const HYSTERESIS: f64 = 1e-9;

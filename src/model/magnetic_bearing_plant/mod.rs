@@ -3,9 +3,5 @@
 mod equations;
 mod table;
 
-use super::continuous_plant::ContinuousPlant;
-use equations::MagneticBearingEquations;
+pub use equations::MagneticBearingPlant;
 pub use table::DESCRIPTION;
-
-/// The plant as a model.
-pub type MagneticBearingPlant = ContinuousPlant<MagneticBearingEquations, { table::COUNT }, 3, 1>;

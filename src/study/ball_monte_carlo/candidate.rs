@@ -86,13 +86,18 @@ pub const ADAPTIVE_RESISTANCE: usize = 3;
 pub const ADAPTIVE_OFFSET: usize = 4;
 pub const CANDIDATES: usize = 5;
 
+/// The Newton variant without adaptation.
+pub fn newton() -> ObserverCandidate {
+    ObserverCandidate::newton("Newton", &[("observer.kind", Value::Text("polynomial_newton"))])
+}
+
 /// All candidates in the order of the constants above, DREM with its best setting.
 pub fn all(tuned: &DremSetting) -> [ObserverCandidate; CANDIDATES] {
     let adaptive = Value::Text("polynomial_newton_adaptive");
     [
         ObserverCandidate::drem("DREM, retuned", tuned),
         ObserverCandidate::drem("no adaptation", &DremSetting::FROZEN),
-        ObserverCandidate::newton("Newton", &[("observer.kind", Value::Text("polynomial_newton"))]),
+        newton(),
         ObserverCandidate::newton(
             "adaptive Newton, resistance",
             &[("observer.kind", adaptive), ("observer.adaptation", Value::Text("resistance"))],

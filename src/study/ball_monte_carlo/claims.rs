@@ -98,7 +98,7 @@ fn drem_under_noise(tuning: &Tuning, campaign: &Campaign) -> Claim {
         .judged(
             usable,
             "Exact parameters, T = 0.1 ms, gains, filters and normalisation searched: on each reference \
-             some setting loses no run and has an rms flux error of at most 1 %. A ball that stays up \
+             some setting loses no run and has an rms flux error of at most 1 %. A ball that remained levitated \
              because the estimate hardly moves does not count.",
         )
 }

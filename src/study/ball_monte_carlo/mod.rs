@@ -3,78 +3,10 @@
 mod campaign;
 mod candidate;
 mod claims;
+mod experiment;
 mod figures;
 mod spread;
 mod trial;
 mod tuning;
 
-use std::path::Path;
-
-use super::loop_packages::LoopPackages;
-use super::sweep::part;
-use super::{Findings, Progress, StudyError};
-use crate::host::Value;
-use crate::model::system::BALL;
-use campaign::Campaign;
-use candidate::ObserverCandidate;
-use spread::SPREADS;
-use tuning::Tuning;
-
-const PROVENANCE: &[&str] = &[
-    "Not in the paper, whose simulations know neither noise nor wrong parameters and whose \
-             equations and numbers are lost in the text at hand: the regression is a valid one of the \
-             announced kind, every numeric parameter is assumed or tuned. The spreads are assumed as \
-             well.",
-    "Each run lasts 4 s through the packaged models, errors are scored from 2 s on, and a run is \
-             lost as soon as the ball touches the magnet or the lower stop. The Newton variants run at \
-             0.2 ms with the model's gains, which were tuned on runs like these; DREM runs at 0.1 ms, as \
-             it cannot do with less, with the setting that a search with exact parameters found best for \
-             the noise and the reference. \"No adaptation\" is DREM with gamma = 0: it shows what \
-             survival alone is worth.",
-];
-
-/// Share of the work that tuning is.
-const TUNING: f64 = 0.25;
-
-fn newton() -> ObserverCandidate {
-    ObserverCandidate::newton("Newton", &[("observer.kind", Value::Text("polynomial_newton"))])
-}
-
-/// How much of the experiment is run.
-#[derive(Clone, Copy, Debug)]
-pub struct Extent {
-    /// Most runs per spread, reference and estimator.
-    pub runs: u32,
-    /// Every how manieth setting of DREM is tried.
-    pub stride: usize,
-}
-
-impl Extent {
-    pub const FULL: Self = Self { runs: u32::MAX, stride: 1 };
-}
-
-/// Runs everything through the packages in `packages`.
-pub fn run(packages: &Path, progress: Progress<'_>) -> Result<Findings, StudyError> {
-    run_extent(packages, Extent::FULL, progress)
-}
-
-/// As [`run`], in part.
-pub fn run_extent(packages: &Path, extent: Extent, progress: Progress<'_>) -> Result<Findings, StudyError> {
-    let packages = LoopPackages::open(packages, &BALL)?;
-    let tuning = Tuning::simulate(&packages, extent.stride, &part(progress, 0.0, TUNING))?;
-    let field = |spread: usize, reference: usize| {
-        candidate::all(&tuning.setting_for(reference, SPREADS[spread].noise))
-    };
-    let campaign = Campaign::simulate(&packages, field, extent.runs, &part(progress, TUNING, 0.99))?;
-    // For names and sample times, which all fields share.
-    let candidates = field(0, 0);
-    Ok(Findings {
-        name: "ball-monte-carlo",
-        title: "Levitated ball under wrong parameters and noise",
-        provenance: PROVENANCE,
-        figures: figures::all(&tuning, &candidates, &campaign),
-        claims: claims::all(&tuning, &campaign),
-        summaries: claims::tables(&tuning, &candidates, &campaign),
-        advice: claims::advice(&tuning, &candidates, &campaign),
-    })
-}
+pub use experiment::{Extent, run, run_extent};

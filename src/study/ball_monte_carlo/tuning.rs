@@ -1,7 +1,7 @@
 //! DREM at its best: which gain, filters and normalisation serve it under noise.
 
 use super::campaign::REFERENCES;
-use super::candidate::{DremSetting, ObserverCandidate};
+use super::candidate::{DremSetting, ObserverCandidate, newton};
 use super::spread::Draw;
 use super::trial::{self, Outcome};
 use crate::signal::BallReference;
@@ -49,7 +49,7 @@ impl Tuning {
         let settings: Vec<DremSetting> = settings().into_iter().step_by(stride).collect();
         let mut candidates: Vec<ObserverCandidate> =
             settings.iter().map(|setting| ObserverCandidate::drem("", setting)).collect();
-        candidates.push(super::newton());
+        candidates.push(newton());
         let cases = indices([REFERENCES.len(), NOISES.len(), candidates.len()]);
         let scores = sweep(&cases, progress, "ball-monte-carlo: tuning DREM", |&[reference, noise, who]| {
             score(packages, &candidates[who], REFERENCES[reference], NOISES[noise])

@@ -1,6 +1,6 @@
 //! Figures 2 to 6, laid out as their captions say.
 
-use super::{BIAS_FLUXES, LAWS, POSITIONS, Runs, VOLTAGES};
+use super::runs::{BIAS_FLUXES, LAWS, POSITIONS, Runs, VOLTAGES};
 use crate::chart::{Panel, Stroke};
 use crate::study::findings::{FigureWithData, Labelled, STATES_AND_ESTIMATES, Table, labelled, lines};
 use crate::study::run::Run;

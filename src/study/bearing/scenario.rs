@@ -1,6 +1,6 @@
 //! One run of the bearing's control loop through the packaged models.
 
-use super::SAMPLE_TIME;
+use super::runs::SAMPLE_TIME;
 use crate::host::Value;
 use crate::study::StudyError;
 use crate::study::loop_packages::LoopPackages;

@@ -1,7 +1,7 @@
 //! Posterior Cramer-Rao bound of the bearing (Tichavsky, Muravchik, Nehorai 1998): without process noise, or with noise
 //! on the flux alone, it is the Kalman covariance with the Jacobians along the true trajectory.
 
-use super::SCORED_FROM;
+use super::conditions::SCORED_FROM;
 use crate::observer::factored_covariance::FactoredCovariance;
 use crate::observer::kalman::INITIAL_VARIANCES;
 use crate::plant::magnetic_bearing::{MagneticBearing, Map};

@@ -1,6 +1,6 @@
 //! The observers that are compared, and one run of the loop with one of them.
 
-use super::{DURATION, INITIAL_FLUX, LOST_BEYOND, SCORED_FROM};
+use super::conditions::{DURATION, INITIAL_FLUX, LOST_BEYOND, SCORED_FROM};
 use crate::host::Value;
 use crate::study::StudyError;
 use crate::study::loop_packages::{LoopPackages, Parameter};
@@ -112,6 +112,6 @@ pub fn rms_error(run: &Run, state: &str) -> f64 {
 }
 
 /// Whether the rotor stayed near the centre all the time.
-pub fn stayed_up(run: &Run) -> bool {
+pub fn remained_levitated(run: &Run) -> bool {
     run.state("position").iter().all(|position| position.abs() <= LOST_BEYOND)
 }

@@ -2,8 +2,8 @@
 
 use super::candidates::{Conditions, rms_error, simulate};
 use super::comparison::Comparison;
+use super::conditions::{INITIAL_FLUX, NOISES, SAMPLE_TIMES};
 use super::presentation::index_of;
-use super::{INITIAL_FLUX, NOISES, SAMPLE_TIMES};
 use crate::host::Value;
 use crate::study::StudyError;
 use crate::study::claim::Claim;

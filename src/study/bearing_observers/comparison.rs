@@ -1,8 +1,8 @@
 //! All observers under all conditions.
 
 use super::bound::{Bound, cramer_rao};
-use super::candidates::{CANDIDATES, Conditions, rms_error, simulate, stayed_up};
-use super::{NOISES, SAMPLE_TIMES, seeds};
+use super::candidates::{CANDIDATES, Conditions, rms_error, simulate, remained_levitated};
+use super::conditions::{NOISES, SAMPLE_TIMES, seeds};
 use crate::study::loop_packages::LoopPackages;
 use crate::study::metrics::{indicator, root_mean_square};
 use crate::study::sweep::{indices, sweep};
@@ -14,7 +14,7 @@ pub struct Score {
     /// Root mean square errors \[m/s\], \[Wb\].
     pub velocity: f64,
     pub flux: f64,
-    /// Share of runs in which the loop on estimates stays up.
+    /// Share of runs in which the rotor, held by the estimates, remained levitated.
     pub survival: f64,
 }
 
@@ -75,7 +75,7 @@ fn score(
     Ok(Score {
         velocity: rms_error(&observed, "velocity"),
         flux: rms_error(&observed, "flux"),
-        survival: indicator(stayed_up(&in_loop)),
+        survival: indicator(remained_levitated(&in_loop)),
     })
 }
 

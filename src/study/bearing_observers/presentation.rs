@@ -2,7 +2,7 @@
 
 use super::candidates::CANDIDATES;
 use super::comparison::{Comparison, Score};
-use super::{NOISES, SAMPLE_TIMES, seeds};
+use super::conditions::{NOISES, SAMPLE_TIMES, seeds};
 use crate::chart::Panel;
 use crate::study::metrics::largest;
 use crate::study::report::quantity;
@@ -27,13 +27,13 @@ pub fn figures(comparison: &Comparison) -> Vec<FigureWithData> {
     let panels = (0..3)
         .map(|time| error_panel(comparison, time, true, &of(time, "flux")))
         .chain((0..3).map(|time| error_panel(comparison, time, false, &of(time, "velocity"))))
-        .chain((0..3).map(|time| survival_panel(comparison, time, &of(time, "loop stays up"))));
+        .chain((0..3).map(|time| survival_panel(comparison, time, &of(time, "rotor remained levitated"))));
     let title = "Observers of the magnetic bearing under sensor noise";
     let figure = FigureWithData::new("bearing_observers", title, data(comparison))
         .caption(
             "Root mean square errors of flux and velocity over the sensor's noise for three sample times, \
              all observers on the same data, with the Cramer-Rao bound; and the share of runs in which the \
-             loop on estimates stays up. Without noise see the tables. Over few seeds an error may come out \
+             rotor, held by the estimates, remained levitated. Without noise see the tables. Over few seeds an error may come out \
              below the bound, which holds for the average over all.",
         )
         .panels(3, panels);
@@ -54,7 +54,7 @@ fn error_panel(comparison: &Comparison, time: usize, flux: bool, title: &str) ->
     candidates(panel, comparison, time, false, value).dashed("", BOUND, bounds)
 }
 
-/// Also carries the legend, since its lower half is empty where the loops stay up.
+/// Also carries the legend, since its lower half is empty where all rotors remained levitated.
 fn survival_panel(comparison: &Comparison, time: usize, title: &str) -> Panel {
     let panel = Panel::new(title, NOISE_AXIS, "share of runs [%]").x_logarithmic().from_to(0.0, 105.0);
     let panel = candidates(panel, comparison, time, time == 0, |score| 100.0 * score.survival);
@@ -127,7 +127,7 @@ pub fn tables(comparison: &Comparison) -> Vec<Summary> {
                 .map(|bound| format!("{:.1e} Wb, {:.1e} m/s", bound.flux, bound.velocity));
             rows.push(std::iter::once("Cramer-Rao bound".to_owned()).chain(bounds).collect());
             let title = format!(
-                "T = {} ms: rms errors of flux and velocity, share of loops that stay up ({} seeds)",
+                "T = {} ms: rms errors of flux and velocity, share of runs in which the rotor remained levitated ({} seeds)",
                 1e3 * sample_time,
                 seeds(*sample_time)
             );
