@@ -1,6 +1,6 @@
 //! Why a call was refused. The instance is as it was before the call.
 
-use super::log::CategoryName;
+use super::log_categories::{CategoryList, CategoryName};
 use super::{StateError, Status};
 use crate::model::ModelError;
 use crate::model::value::ValueError;
@@ -71,7 +71,7 @@ pub enum CallError {
     WrongOrder { name: &'static str, order: i32 },
     #[error("continuous state {0}")]
     StateRejected(ValueError),
-    #[error("the category {0} is not declared in the model description: expected one of {categories}", categories = super::log::CategoryList)]
+    #[error("the category {0} is not declared in the model description: expected one of {categories}", categories = CategoryList)]
     UnknownCategory(CategoryName),
     #[error("not offered by this model: {0}")]
     NotOffered(&'static str),

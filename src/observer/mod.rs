@@ -16,6 +16,7 @@ pub mod kalman;
 pub mod kalman_filter;
 mod least_squares_window;
 pub mod newton;
+mod newton_settings;
 pub mod polynomial_newton;
 pub mod process_model;
 pub mod reduced_newton;

@@ -6,7 +6,7 @@
 //! the second difference, and the other two follow by substitution. This is algebra, not approximation; the
 //! iterates are those of (6) for every d and alpha.
 
-use super::newton::NewtonSettings;
+use super::newton_settings::NewtonSettings;
 use super::step_length::{moved, step_length};
 use super::{CONVERGED, largest_magnitude};
 use crate::plant::magnetic_bearing::{ForceEffect, State};

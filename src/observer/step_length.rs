@@ -2,7 +2,7 @@
 //! (Mystkowski, Kotta, Kaparin 2018).
 
 use super::CONVERGED;
-use super::newton::NewtonSettings;
+use super::newton_settings::NewtonSettings;
 use crate::plant::magnetic_bearing::State;
 
 /// How often the line search halves a step before it gives up.

@@ -9,7 +9,7 @@ use super::model_description::{model_description, terminals_and_icons};
 use super::plug::Plug;
 use super::reference_run::ReferenceRun;
 use super::related_files::related_files;
-use super::run_figure::run_figure;
+use super::run_figure::{RUN_FIGURE, run_figure};
 use super::{FmiVersion, Form, GenerationTime, Library, PackageError, licenses};
 use crate::model::{Description, StartValues};
 
@@ -29,9 +29,6 @@ impl<'a> Entry<'a> {
         Self { path, bytes, executable: false }
     }
 }
-
-/// File name of the figure of the reference run, beside the documentation's first page.
-pub const RUN_FIGURE: &str = "reference-run.svg";
 
 /// All files of the package of one model in one form, sorted by path.
 pub fn contents<'a>(

@@ -4,11 +4,11 @@ use std::borrow::Cow;
 
 use quick_xml::escape::escape;
 
-use super::contents::RUN_FIGURE;
 use super::loop_diagram::diagram_name;
 use super::model_description::enumerations;
 use super::plug::Plug;
 use super::related_files::{DIRECTORY, INPUT, OUTPUT};
+use super::run_figure::RUN_FIGURE;
 use super::{Form, GenerationTime, licenses, variable_text};
 use crate::model::{Description, Edition, StartValues};
 

@@ -7,6 +7,9 @@ use super::reference_run::{ReferenceRun, Table};
 use crate::chart::thin;
 use crate::model::variable::{Kind, Variable};
 
+/// File name of the figure of the reference run, beside the documentation's first page.
+pub const RUN_FIGURE: &str = "reference-run.svg";
+
 /// Lengths in the picture \[pixel\].
 const WIDTH: f64 = 290.0;
 const HEIGHT: f64 = 70.0;

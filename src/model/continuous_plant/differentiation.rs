@@ -1,12 +1,11 @@
 //! A plant for importers that integrate it or ask for derivatives.
 
-use super::shell::follow;
+use super::evaluation::{follow, initialise};
 use super::{ContinuousPlant, PlantEquations};
 use crate::model::continuous::{Stage, Tangents};
-use crate::model::sensor::{Sensor, noisy};
+use crate::model::sensor::Sensor;
 use crate::model::{ContinuousModel, Solver, TIME};
-use crate::scalar::{Dual, Scalar};
-use crate::signal::quantise;
+use crate::scalar::Dual;
 
 impl<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U: usize> ContinuousModel
     for ContinuousPlant<E, N, X, U>
@@ -69,30 +68,5 @@ impl<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U: usize>
         if let Some(place) = E::INPUTS.iter().position(|row| *row == input) {
             self.slopes[place] = slope;
         }
-    }
-}
-
-/// What initialisation computes from parameters and inputs, given the mode that follows from them and the first `sample`
-/// of the sensor's noise.
-pub(super) fn initialise<E, S: Scalar, const N: usize, const X: usize, const U: usize>(
-    values: &mut [S; N],
-    mode: E::Mode,
-    solver: Solver,
-    is_read: bool,
-    sample: S,
-) where
-    E: PlantEquations<N, X, U>,
-{
-    E::calculate_parameters(values);
-    let state = E::initial_state(values);
-    for (row, value) in E::STATES.into_iter().zip(state) {
-        values[row] = value;
-    }
-    E::report_acting_voltage(values, S::from(0.0));
-    follow::<E, S, N, X, U>(values, |values| E::evaluate(values, mode), solver, is_read);
-    if is_read {
-        let rows = E::SENSOR;
-        let reading = noisy(E::measured(values, &state), values[rows.noise], sample);
-        values[E::READING] = E::within_range(values, quantise(reading, values[rows.resolution]));
     }
 }

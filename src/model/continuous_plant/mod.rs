@@ -3,6 +3,7 @@
 
 mod differentiation;
 mod equations;
+mod evaluation;
 mod shell;
 #[cfg(feature = "tools")]
 mod tracing;

@@ -2,12 +2,11 @@
 
 use core::array::from_fn;
 
-use super::differentiation::initialise;
+use super::evaluation::initialise;
 use super::{Motion, PlantEquations};
 use crate::model::sensor::{Sensor, check_sample_time};
 use crate::model::work::require_affordable;
 use crate::model::{ContinuousModel, Description, LogSink, Model, ModelError, Solver, TIME, Topic};
-use crate::scalar::Scalar;
 use crate::signal::{GaussianNoise, quantise};
 use serde::{Deserialize, Serialize};
 use serde_big_array::BigArray;
@@ -119,28 +118,6 @@ impl<E: PlantEquations<N, X, U>, const N: usize, const X: usize, const U: usize>
 {
     fn default() -> Self {
         Self::new()
-    }
-}
-
-/// All that follows at one instant from the rows of states, inputs and parameters, and that `evaluate` does not compute. The
-/// outputs of the voltage and of a sensor that `is_read` tell of the past, unless an importer solves the plant.
-#[inline]
-pub(super) fn follow<E, S: Scalar, const N: usize, const X: usize, const U: usize>(
-    values: &mut [S; N],
-    evaluate: impl FnOnce(&mut [S; N]),
-    solver: Solver,
-    is_read: bool,
-) where
-    E: PlantEquations<N, X, U>,
-{
-    evaluate(values);
-    if solver == Solver::Importer {
-        let voltage = E::acting_voltage(values, values[E::INPUTS[0]]);
-        E::report_acting_voltage(values, voltage);
-        if !is_read {
-            let measured = E::measured(values, &E::STATES.map(|row| values[row]));
-            values[E::READING] = E::within_range(values, measured);
-        }
     }
 }
 

@@ -2,8 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::differentiation::initialise;
-use super::shell::follow;
+use super::evaluation::{follow, initialise};
 use super::{ContinuousPlant, PlantEquations};
 use crate::model::Solver;
 use crate::model::structure::{Dependencies, DependencyKind, Structured};

@@ -1,7 +1,7 @@
 //! What the paper says about its observer and loop, judged by the runs.
 
-use super::runs::{BIAS_FLUXES, LAWS, POSITIONS, Runs, SAMPLE_TIME, SIMULATION_TIME, VOLTAGES};
-use super::scenario::{STATES, Scenario, largest_error, simulate};
+use super::runs::{BIAS_FLUXES, LAWS, POSITIONS, Runs, SIMULATION_TIME, VOLTAGES};
+use super::scenario::{SAMPLE_TIME, STATES, Scenario, largest_error, simulate};
 use crate::host::Value;
 use crate::study::StudyError;
 use crate::study::claim::Claim;

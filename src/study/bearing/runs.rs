@@ -8,8 +8,6 @@ use crate::study::{Progress, StudyError};
 
 /// Simulation time of Table 1 \[s\].
 pub(super) const SIMULATION_TIME: f64 = 10.0;
-/// T of Table 1 \[s\].
-pub(super) const SAMPLE_TIME: f64 = 1e-3;
 /// Options of Table 1 for x1(0) \[m\].
 pub(super) const POSITIONS: [f64; 3] = [0.0, 0.001, 0.01];
 /// Options of Table 1 for u(0) \[V\].

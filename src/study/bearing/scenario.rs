@@ -1,11 +1,13 @@
 //! One run of the bearing's control loop through the packaged models.
 
-use super::runs::SAMPLE_TIME;
 use crate::host::Value;
 use crate::study::StudyError;
 use crate::study::loop_packages::LoopPackages;
 use crate::study::metrics::peak;
 use crate::study::run::Run;
+
+/// T of Table 1 \[s\].
+pub(super) const SAMPLE_TIME: f64 = 1e-3;
 
 /// Parameters of a run; everything else keeps its start value.
 #[derive(Clone, Copy, Debug, PartialEq)]

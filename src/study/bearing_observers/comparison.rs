@@ -1,7 +1,7 @@
 //! All observers under all conditions.
 
 use super::bound::{Bound, cramer_rao};
-use super::candidates::{CANDIDATES, Conditions, rms_error, simulate, remained_levitated};
+use super::candidates::{CANDIDATES, Conditions, remained_levitated, rms_error, simulate};
 use super::conditions::{NOISES, SAMPLE_TIMES, seeds};
 use crate::study::loop_packages::LoopPackages;
 use crate::study::metrics::{indicator, root_mean_square};
