@@ -6,7 +6,7 @@ mod measure;
 
 use maglev_fmu::model::system::BALL;
 use maglev_fmu::model::{ClosedLoop, ExchangeOrder, LevitatedBallController, LevitatedBallPlant};
-use maglev_fmu::signal::BallReference;
+use maglev_fmu::study::ball::BallReference;
 use maglev_fmu_test::component::Component;
 use maglev_fmu_test::values::{get, set};
 use measure::{Candidate, medians, verdict};

@@ -6,7 +6,7 @@ use std::fmt::{self, Write};
 
 use maglev_fmu::model::system::{BEARING, RIG};
 use maglev_fmu::model::{LogSink, NullLogSink, Topic};
-use maglev_fmu::signal::BallReference;
+use maglev_fmu::study::ball::BallReference;
 use maglev_fmu_test::bearing::OBSERVERS;
 use maglev_fmu_test::closed_loop::closed_loop;
 use maglev_fmu_test::values::{get, set};

@@ -5,8 +5,10 @@ mod continuous;
 mod cost;
 mod experiment;
 mod figures;
+mod reference;
 mod runs;
 mod scenario;
 mod tables;
 
 pub use experiment::run;
+pub use reference::BallReference;

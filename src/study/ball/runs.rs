@@ -1,7 +1,7 @@
 //! All runs that figures, tables and claims look at.
 
+use super::reference::BallReference::{self, Constant, Sinusoids, Steps};
 use super::scenario::{ADAPTIVE, DREM, NEWTON, Scenario, simulate};
-use crate::signal::BallReference::{self, Constant, Sinusoids, Steps};
 use crate::study::loop_packages::LoopPackages;
 use crate::study::run::Run;
 use crate::study::sweep::sweep;

@@ -1,8 +1,8 @@
 //! One run of the levitated ball's control loop through the packaged models.
 
+use super::reference::BallReference;
 use crate::host::Value;
 use crate::plant::levitated_ball::LevitatedBall;
-use crate::signal::BallReference;
 use crate::study::StudyError;
 use crate::study::loop_packages::LoopPackages;
 use crate::study::metrics::{difference, root_mean_square};

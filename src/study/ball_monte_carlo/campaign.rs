@@ -3,7 +3,7 @@
 use super::candidate::{CANDIDATES, ObserverCandidate};
 use super::spread::SPREADS;
 use super::trial::{self, Outcome};
-use crate::signal::BallReference::{self, Sinusoids, Steps};
+use crate::study::ball::BallReference::{self, Sinusoids, Steps};
 use crate::study::loop_packages::LoopPackages;
 use crate::study::metrics;
 use crate::study::sweep::sweep;

@@ -4,7 +4,7 @@ use super::campaign::REFERENCES;
 use super::candidate::{DremSetting, ObserverCandidate, newton};
 use super::spread::Draw;
 use super::trial::{self, Outcome};
-use crate::signal::BallReference;
+use crate::study::ball::BallReference;
 use crate::study::loop_packages::LoopPackages;
 use crate::study::sweep::{indices, sweep};
 use crate::study::{Progress, StudyError};

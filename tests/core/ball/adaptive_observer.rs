@@ -1,7 +1,7 @@
 //! The adaptive observer with parameters that are not what it believes, a noisy current and an offset of the voltage.
 
 use maglev_fmu::plant::levitated_ball::LevitatedBall;
-use maglev_fmu::signal::BallReference::{self, Sinusoids, Steps};
+use maglev_fmu::study::ball::BallReference::{self, Sinusoids, Steps};
 use maglev_fmu_test::values::get;
 use rand_core::Rng;
 use rand_pcg::Pcg32;

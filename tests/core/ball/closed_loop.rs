@@ -3,7 +3,7 @@
 
 use maglev_fmu::model::{LevitatedBallController, Model, ModelError, NullLogSink};
 use maglev_fmu::plant::levitated_ball::LevitatedBall;
-use maglev_fmu::signal::BallReference::{self, Constant, Sinusoids, Steps};
+use maglev_fmu::study::ball::BallReference::{self, Constant, Sinusoids, Steps};
 use maglev_fmu_test::values::{get, set};
 use proptest::prelude::*;
 

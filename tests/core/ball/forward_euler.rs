@@ -7,7 +7,8 @@ use maglev_fmu::observer::drem::{Drem, MixingSettings};
 use maglev_fmu::observer::flux_regression::{FluxRegression, FluxRegressionSettings, Sample};
 use maglev_fmu::plant::end_stops::Contact;
 use maglev_fmu::plant::levitated_ball::{Drive, LevitatedBall, State};
-use maglev_fmu::signal::{BallReference, BallReferenceFilter, FirstOrderHold};
+use maglev_fmu::signal::{BallReferenceFilter, FirstOrderHold};
+use maglev_fmu::study::ball::BallReference;
 
 const OFFSET: f64 = 0.1;
 const RATES: [f64; 2] = [100.0, 300.0];

@@ -5,7 +5,7 @@ use std::ops::{Deref, DerefMut};
 use maglev_fmu::model::system::BALL;
 use maglev_fmu::model::{ClosedLoop, NullLogSink};
 use maglev_fmu::plant::levitated_ball::LevitatedBall;
-use maglev_fmu::signal::BallReference;
+use maglev_fmu::study::ball::BallReference;
 use maglev_fmu_test::closed_loop::closed_loop;
 use maglev_fmu_test::values::{get, reference, set};
 
