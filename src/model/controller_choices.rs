@@ -5,7 +5,7 @@ use super::choice::choice;
 choice! {
     /// Which voltage an observer is told.
     pub enum VoltageSource = "VoltageSource", "Which voltage the observer believes acted over the last sample" {
-        Command = "command", "The voltage this model put out";
+        Command = "command", "The voltage this controller put out";
         Applied = "applied", "The input voltage_applied, right in every exchange order";
     }
 }

@@ -103,7 +103,7 @@ variable_table! {
         .describe("Rate of reference.position");
     SAMPLE_TIME = Variable::parameter("sample_time", Kind::Real(&DURATION), 1e-4)
         .range(1e-6, 1.0)
-        .describe("T, the model ticks at all multiples of it, whatever the communication step size");
+        .describe("T, the controller ticks at all multiples of it, whatever the communication step size");
     START_DELAY = start_delay();
     LONGEST_STEP = longest_step();
     OBSERVER = Variable::parameter("observer.kind", Kind::Enumeration(&OBSERVER_KIND), ObserverKind::Drem.number())

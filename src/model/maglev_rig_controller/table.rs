@@ -139,7 +139,7 @@ variable_table! {
         .describe("Time of the last tick, a multiple of sample_time; the start time before the first");
     SAMPLE_TIME = Variable::parameter("sample_time", Kind::Real(&DURATION), 1e-3)
         .range(1e-6, 1.0)
-        .describe("T, the model ticks at all multiples of it, whatever the communication step size");
+        .describe("T, the controller ticks at all multiples of it, whatever the communication step size");
     START_DELAY = start_delay();
     LONGEST_STEP = longest_step();
     OBSERVER = Variable::parameter("observer.kind", Kind::Enumeration(&OBSERVER_KIND), ObserverKind::Linear.number())
