@@ -1,6 +1,6 @@
 //! End stops as state events for importers that integrate a plant: impacts and releases.
 
-use crate::plant::end_stops::{self, Contact, Guided};
+use crate::plant::contact::{Contact, Guided, event_indicators};
 use crate::scalar::Scalar;
 
 /// Distance by which a body may be beyond a stop before that is an impact \[m\]: an event indicator must not be zero
@@ -22,7 +22,7 @@ pub(super) fn indicators<const N: usize, S: Scalar>(
 ) -> [S; 2] {
     let (smallest, largest) = system.stops();
     let way = largest - smallest;
-    let [below, above] = end_stops::event_indicators(system, state, contact);
+    let [below, above] = event_indicators(system, state, contact);
     let distance = |metres: S| (metres + S::from(CLEARANCE)) / way;
     let pressure = |acceleration: S| acceleration / S::from(ACCELERATION) + S::from(HYSTERESIS);
     match contact {

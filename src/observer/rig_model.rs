@@ -124,7 +124,7 @@ impl ProcessModel<3> for DisturbedRig {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plant::end_stops::Contact;
+    use crate::plant::contact::Contact;
     use crate::plant::maglev_rig::{HeldBall, State};
     use nalgebra::{Matrix3, Vector3};
 

@@ -11,7 +11,8 @@
 //!
 //! The magnet's face is at y = c.
 
-use super::end_stops::{Contact, Guided, advance};
+use super::contact::{Contact, Guided};
+use super::end_stops::advance;
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 

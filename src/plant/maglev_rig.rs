@@ -12,7 +12,8 @@
 //! x \[m\] is the distance from coil to ball, positive downwards; u >= 0 \[V\] the voltage; F \[N\] a disturbing force.
 //! The sensor reads k2 x + eta in volts (from the rig's manual), so that its voltage grows as the ball falls.
 
-use super::end_stops::{self, Contact, Guided};
+use super::contact::{Contact, Guided};
+use super::end_stops;
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
@@ -219,9 +220,9 @@ mod tests {
             ([1.0, 2.0], [25e-3, 0.0], Contact::AtLargestPosition),
             ([9e-3, 0.3], [9e-3, 0.3], Contact::None),
         ] {
-            let mut start = end_stops::settled(given, ball.stops());
+            let mut start = crate::plant::contact::settled(given, ball.stops());
             assert_eq!(start, expected);
-            assert_eq!(end_stops::transition(&ball, &mut start, Contact::None), contact);
+            assert_eq!(crate::plant::contact::transition(&ball, &mut start, Contact::None), contact);
             assert_eq!(start, expected);
         }
     }

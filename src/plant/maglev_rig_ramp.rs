@@ -1,6 +1,7 @@
 //! The maglev rig under inputs that move along straight lines.
 
-use super::end_stops::{self, Contact, Guided};
+use super::contact::{Contact, Guided};
+use super::end_stops;
 use super::maglev_rig::{HeldBall, LONGEST_SUBSTEP, State};
 
 /// The ball under a voltage and a force that start from those of `begin`; the driver limits the voltage.

@@ -1,5 +1,6 @@
 //! Continuous-time physics, one file per rig. Knows nothing of sampling policies, models or FMI.
 
+pub mod contact;
 pub mod end_stops;
 pub mod levitated_ball;
 pub mod maglev_rig;

@@ -27,6 +27,7 @@ mod model_exchange;
 mod panic;
 mod random;
 mod refused_references;
+mod refused_states;
 mod refused_values;
 mod round_trips;
 mod saved_state;

@@ -14,4 +14,5 @@ mod start_values;
 mod system_models;
 mod systems;
 mod third_party;
+mod variable_descriptions;
 mod xml;

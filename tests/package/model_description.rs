@@ -3,28 +3,28 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use maglev_fmu::model::structure::DependencyKind;
-use maglev_fmu::model::variable::{Causality, Kind};
+use maglev_fmu::model::variable::Causality;
 use maglev_fmu::model::{Description, Edition, MODELS, StartValues, models};
 use maglev_fmu::package::{Capabilities, FmiVersion, Form, GenerationTime, model_description};
 
 use super::xml::Element;
 
 /// A variable of either standard.
-struct Variable<'a> {
-    name: &'a str,
+pub(super) struct Variable<'a> {
+    pub name: &'a str,
     /// Element with causality, variability, initial.
-    head: &'a Element,
+    pub head: &'a Element,
     /// Element with type, start, min, max; the same as `head` in FMI 3.0.
-    value: &'a Element,
+    pub value: &'a Element,
 }
 
 impl Variable<'_> {
-    fn number(&self, attribute: &str) -> Option<f64> {
+    pub fn number(&self, attribute: &str) -> Option<f64> {
         self.value.attribute(attribute).map(|text| text.parse().unwrap())
     }
 }
 
-fn variables(root: &Element) -> Vec<Variable<'_>> {
+pub(super) fn variables(root: &Element) -> Vec<Variable<'_>> {
     // Clocks have a test of their own.
     let elements = root.child("ModelVariables").children.iter().filter(|element| element.name != "Clock");
     elements
@@ -36,7 +36,7 @@ fn variables(root: &Element) -> Vec<Variable<'_>> {
 }
 
 /// Name to element of all type definitions; in FMI 2.0 the element inside `SimpleType`.
-fn types(root: &Element) -> BTreeMap<&str, &Element> {
+pub(super) fn types(root: &Element) -> BTreeMap<&str, &Element> {
     let definitions = &root.child("TypeDefinitions").children;
     let types: BTreeMap<&str, &Element> = definitions
         .iter()
@@ -50,7 +50,7 @@ fn types(root: &Element) -> BTreeMap<&str, &Element> {
 }
 
 /// Unit name to display unit names.
-fn units_of_measure(root: &Element) -> BTreeMap<&str, Vec<&str>> {
+pub(super) fn units_of_measure(root: &Element) -> BTreeMap<&str, Vec<&str>> {
     let definitions = &root.child("UnitDefinitions").children;
     assert!(definitions.iter().all(|element| element.children_named("BaseUnit").count() == 1));
     let units: BTreeMap<&str, Vec<&str>> = definitions
@@ -64,7 +64,7 @@ fn units_of_measure(root: &Element) -> BTreeMap<&str, Vec<&str>> {
     units
 }
 
-fn check_all(check: impl Fn(&'static Description, Form, &Element)) {
+pub(super) fn check_all(check: impl Fn(&'static Description, Form, &Element)) {
     for model in models() {
         for form in Form::all_of(model.description) {
             let text = model_description(model.description, StartValues::TABLE, form, None);
@@ -188,46 +188,6 @@ fn flags_of_model_exchange_are_those_of_the_library() {
 }
 
 #[test]
-fn states_are_referred_to_by_their_derivatives() {
-    check_all(|description, form, root| {
-        let offset = if form.version == FmiVersion::Two { 1 } else { 0 };
-        let variables = variables(root);
-        for (variable, row) in variables.iter().zip(description.variables) {
-            let state =
-                variable.value.attribute("derivative").map(|text| text.parse::<usize>().unwrap() - offset);
-            assert_eq!(state.map(|state| variables[state].name), row.derivative_of, "{}", row.name);
-            let reinit = variable.value.attribute("reinit");
-            assert_eq!(reinit, row.is_reinitialised.then_some("true"), "{}", row.name);
-        }
-        let count = description.event_indicators().count().to_string();
-        let expected =
-            (form.version == FmiVersion::Two && description.offers_model_exchange()).then_some(count);
-        assert_eq!(root.attribute("numberOfEventIndicators"), expected.as_deref());
-    });
-}
-
-#[test]
-fn variables_are_the_rows_of_the_table() {
-    check_all(|description, form, root| {
-        let variables = variables(root);
-        assert_eq!(variables.len(), description.variables.len());
-        for (reference, (variable, row)) in variables.iter().zip(description.variables).enumerate() {
-            assert_eq!(variable.name, row.name);
-            assert_eq!(variable.head.attribute("valueReference"), Some(reference.to_string().as_str()));
-            let kind = match (form.version, row.kind) {
-                (FmiVersion::Two, Kind::Real(_)) => "Real",
-                (FmiVersion::Three, Kind::Real(_)) => "Float64",
-                (FmiVersion::Two, Kind::Integer) => "Integer",
-                (FmiVersion::Three, Kind::Integer) => "Int32",
-                (_, Kind::Boolean) => "Boolean",
-                (_, Kind::Enumeration(_)) => "Enumeration",
-            };
-            assert_eq!(variable.value.name, kind, "{}", row.name);
-        }
-    });
-}
-
-#[test]
 fn clocked_editions_have_two_clocks_and_may_be_scheduled_and_plain_ones_have_neither() {
     check_all(|description, form, root| {
         let elements = root.child("ModelVariables").children.iter();
@@ -282,128 +242,6 @@ fn clocked_editions_have_two_clocks_and_may_be_scheduled_and_plain_ones_have_nei
         let output = root.child("ModelStructure").children_named("Output").last().unwrap();
         assert_eq!(output.attribute("valueReference"), clocks[1].attribute("valueReference"));
         assert_eq!(output.attribute("dependencies"), clocks[0].attribute("valueReference"));
-    });
-}
-
-#[test]
-fn start_and_initial_follow_from_the_causality() {
-    check_all(|_, _, root| {
-        let mut independent = 0;
-        for variable in variables(root) {
-            let [causality, variability] =
-                ["causality", "variability"].map(|name| variable.head.attribute(name).unwrap());
-            let (initial, has_start) = match causality {
-                "parameter" => (Some("exact"), true),
-                "input" => (None, true),
-                "calculatedParameter" | "output" | "local" => (Some("calculated"), false),
-                "independent" => (None, false),
-                other => panic!("{} is {other}", variable.name),
-            };
-            assert_eq!(variable.head.attribute("initial"), initial, "{}", variable.name);
-            assert_eq!(variable.value.attribute("start").is_some(), has_start, "{}", variable.name);
-            let allowed: &[&str] = match causality {
-                "parameter" | "calculatedParameter" => &["fixed", "tunable"],
-                "independent" => &["continuous"],
-                _ => &["discrete", "continuous"],
-            };
-            assert!(allowed.contains(&variability), "{}: {variability}", variable.name);
-            let is_real = ["Real", "Float64"].contains(&variable.value.name.as_str());
-            assert!(is_real || variability != "continuous", "{} is no real number", variable.name);
-            independent += usize::from(causality == "independent");
-        }
-        assert_eq!(independent, 1);
-    });
-}
-
-#[test]
-fn starts_lie_between_minimum_and_maximum() {
-    check_all(|_, _, root| {
-        let types = types(root);
-        for variable in variables(root) {
-            let name = variable.name;
-            if variable.value.name == "Boolean" {
-                assert!(matches!(variable.value.attribute("start"), None | Some("true" | "false")));
-                continue;
-            }
-            let [minimum, start, maximum] = ["min", "start", "max"].map(|name| variable.number(name));
-            for number in [minimum, start, maximum].into_iter().flatten() {
-                assert!(number.is_finite(), "{name}");
-            }
-            let (minimum, maximum) = (minimum.unwrap_or(f64::MIN), maximum.unwrap_or(f64::MAX));
-            assert!(minimum <= maximum, "{name}");
-            let Some(start) = start else { continue };
-            assert!((minimum..=maximum).contains(&start), "{name} = {start}");
-            if variable.value.name == "Enumeration" {
-                let items = &types[variable.value.attribute("declaredType").unwrap()].children;
-                let number = start.to_string();
-                assert!(
-                    items.iter().any(|item| item.attribute("value") == Some(&number)),
-                    "{name} = {start}"
-                );
-            }
-        }
-    });
-}
-
-#[test]
-fn numbers_keep_all_their_digits() {
-    check_all(|description, _, root| {
-        for (variable, row) in variables(root).iter().zip(description.variables) {
-            if matches!(row.kind, Kind::Real(_)) && !row.is_calculated() {
-                assert_eq!(variable.number("start"), Some(row.start), "{}", row.name);
-            }
-        }
-    });
-}
-
-#[test]
-fn types_and_units_are_defined_and_used() {
-    check_all(|_, form, root| {
-        let (types, units) = (types(root), units_of_measure(root));
-        let mut used = BTreeSet::new();
-        for variable in variables(root) {
-            assert!(!types.contains_key(variable.name), "{} is also a type", variable.name);
-            let declared = variable.value.attribute("declaredType");
-            match variable.value.name.as_str() {
-                "Real" | "Float64" => {
-                    let definition = types[declared.expect(variable.name)];
-                    let unit = definition.attribute("unit").unwrap();
-                    match form.version {
-                        FmiVersion::Two => assert_eq!(variable.value.attribute("unit"), Some(unit)),
-                        FmiVersion::Three => {
-                            for attribute in ["unit", "displayUnit", "nominal", "quantity"] {
-                                assert_eq!(variable.value.attribute(attribute), None, "{}", variable.name);
-                            }
-                        }
-                    }
-                    let display = definition.attribute("displayUnit");
-                    assert!(display.is_none_or(|name| units[unit].contains(&name)), "{display:?}");
-                    let nominal: f64 = definition.attribute("nominal").unwrap().parse().unwrap();
-                    assert!(nominal > 0.0);
-                }
-                "Enumeration" => {
-                    let items = &types[declared.expect(variable.name)].children;
-                    for attribute in ["name", "value"] {
-                        let distinct: BTreeSet<_> =
-                            items.iter().map(|item| item.attribute(attribute).unwrap()).collect();
-                        assert_eq!(distinct.len(), items.len(), "{declared:?}");
-                    }
-                }
-                _ => assert_eq!(declared, None),
-            }
-            used.extend(declared);
-        }
-        assert_eq!(used, types.keys().copied().collect());
-        if form.version == FmiVersion::Three {
-            // FMPy before 0.3.24 refuses types with any other attribute, a description for one.
-            let read = ["name", "quantity", "unit", "displayUnit", "min", "max", "nominal"];
-            for definition in types.values() {
-                let unread = definition.attributes.iter().find(|(name, _)| !read.contains(&name.as_str()));
-                assert_eq!(unread, None, "{definition:?}");
-            }
-        }
-        let of_types: BTreeSet<_> = types.values().filter_map(|element| element.attribute("unit")).collect();
-        assert_eq!(of_types, units.keys().copied().collect());
     });
 }
 

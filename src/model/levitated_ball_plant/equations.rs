@@ -7,7 +7,7 @@ use crate::model::end_stop_events::indicators;
 #[cfg(feature = "tools")]
 use crate::model::end_stop_events::{cause_of_contact, imposed};
 use crate::model::work::Load;
-use crate::plant::end_stops::{Contact, rate_in_contact, settled, transition};
+use crate::plant::contact::{Contact, rate_in_contact, settled, transition};
 use crate::plant::levitated_ball::{BallConstants, Drive, DrivenBall, LevitatedBall, State};
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};

@@ -5,7 +5,7 @@
 use maglev_fmu::controller::ball_feedback_linearisation::BallFeedbackLinearisation;
 use maglev_fmu::observer::drem::{Drem, MixingSettings};
 use maglev_fmu::observer::flux_regression::{FluxRegression, FluxRegressionSettings, Sample};
-use maglev_fmu::plant::end_stops::Contact;
+use maglev_fmu::plant::contact::Contact;
 use maglev_fmu::plant::levitated_ball::{Drive, LevitatedBall, State};
 use maglev_fmu::signal::{BallReferenceFilter, FirstOrderHold};
 use maglev_fmu::study::ball::BallReference;

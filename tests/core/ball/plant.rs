@@ -1,7 +1,7 @@
 //! The levitated ball's plant against closed forms, an energy balance and another integrator.
 
 use maglev_fmu::model::{LevitatedBallPlant, Model, ModelError, NullLogSink};
-use maglev_fmu::plant::end_stops::Contact;
+use maglev_fmu::plant::contact::Contact;
 use maglev_fmu::plant::levitated_ball::{Drive, LevitatedBall, State};
 use maglev_fmu_test::values::{get, set};
 use proptest::prelude::*;
