@@ -53,7 +53,7 @@ def test_observer_converges(
 
 
 def parallel_rows(fmi_version: int, position: float, model: str, open_loop: OpenLoop) -> list[list[float]]:
-    """All models step before values are exchanged; the observer hears the voltage that acted."""
+    """All models step before values are exchanged; the observer gets the voltage that acted."""
     controller = {"observer.voltage_source": "applied", "observer.map": model}
     return open_loop(fmi_version, {"initial.position": position}, controller).run(STEPS, "parallel")
 

@@ -1,5 +1,5 @@
 //! A master that steps both models at once hands the voltage over one step late. The observer converges all the same if
-//! it hears the voltage that acted.
+//! it gets the voltage that acted.
 
 use maglev_fmu::host::{ControlLoop, ExchangeOrder, Trace};
 use maglev_fmu::package::FmiVersion::{self, Three, Two};

@@ -32,7 +32,7 @@ pub fn page(system: &System, form: SystemForm, time: GenerationTime) -> String {
 <code>resources/{controller_name}.fmu</code> and <code>resources/{plant_name}.fmu</code>. {connectors}</p>
 <p>Communication step: {:?} s, so in the default experiment; the controller refuses steps beyond its
 <code>longest_step</code>. The models start as a master needs it that steps both at once and then exchanges values: the
-observer hears the voltage that acted (<code>observer.voltage_source = applied</code>), and the controller lets the first
+observer gets the voltage that acted (<code>observer.voltage_source = applied</code>), and the controller lets the first
 step pass (<code>start_delay</code>), in which wires may carry zeros.{remark}</p>
 <p>Parameters are in <code>resources/{controller_name}.ssv</code> and <code>resources/{plant_name}.ssv</code>, at the
 start values of the models in this package and ready to be changed. Choices (enumerations) are not among them, since not
