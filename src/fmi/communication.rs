@@ -53,7 +53,25 @@ impl CommunicationPoint {
     /// an error beyond. A step that
     /// ends after the stop time is an error, too, unless rounding alone carries it there, its own and that of the steps
     /// before (FMI 2.0.5, section 2.1.6; FMI 3.0.2, section 2.3.2).
+    #[inline(always)]
     pub fn duration(&self, point: f64, step_size: f64) -> Result<f64, CallError> {
+        let end = point + step_size;
+        // Nearly every step. An end that is finite was reached from finite numbers, and no comparison holds of what is none.
+        if step_size > 0.0 && self.is_here(point) && end <= self.stop_time && end < f64::INFINITY {
+            return Ok(step_size);
+        }
+        self.duration_in_full(point, step_size)
+    }
+
+    /// Whether `point` is the end of the last step, but for a few units in the last place.
+    #[inline(always)]
+    fn is_here(&self, point: f64) -> bool {
+        (point - self.now).abs() <= ROUNDING * self.now.abs()
+    }
+
+    /// As [`Self::duration`], for every step and with the reasons of refusals.
+    #[cold]
+    fn duration_in_full(&self, point: f64, step_size: f64) -> Result<f64, CallError> {
         if !(step_size.is_finite() && step_size > 0.0) {
             let expected = "a finite step greater than 0 s";
             return Err(CallError::WrongTime {
@@ -78,15 +96,13 @@ impl CommunicationPoint {
                 expected,
             });
         }
-        let is_rounded = (point - self.now).abs() <= ROUNDING * self.now.abs();
-        let passes = if is_rounded { step_size } else { self.duration_after_gap(point, step_size)? };
+        let passes = if self.is_here(point) { step_size } else { self.duration_after_gap(point, step_size)? };
         let argument = "currentCommunicationPoint + communicationStepSize";
         self.require_before_stop_time(argument, point + step_size, step_size)?;
         Ok(passes)
     }
 
     /// As [`Self::duration`], of a step from a `point` that is not the end of the last step.
-    #[cold]
     fn duration_after_gap(&self, point: f64, step_size: f64) -> Result<f64, CallError> {
         let gap = point - self.now;
         // Times round by their own size, be the step as long as it likes; where they come to 0, by the size of those

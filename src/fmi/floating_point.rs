@@ -9,7 +9,7 @@
 //! computations raised, hears of no others ("clear the floating point status word before return", FMI 2.0.5). In the
 //! default environment flags stay raised, as they do after any function of a mathematical library.
 //!
-//! Reading the word costs 1 to 4 ns, longer than getting or setting a variable. Calls that only copy numbers therefore compute
+//! Reading the word costs some nanoseconds, as long as getting or setting a variable. Calls that only copy numbers therefore compute
 //! nothing, not even a comparison of them, and leave the word alone.
 
 use core::hint::black_box;
@@ -30,12 +30,15 @@ impl Drop for Host {
 #[inline]
 pub(super) fn in_default_environment<R>(body: impl FnOnce() -> R) -> R {
     let host = Host(word::read());
-    if !word::is_default(host.0) {
+    let body = if word::is_default(host.0) {
+        body
+    } else {
         word::write(word::DEFAULT);
-    }
-    // The compiler knows nothing of the word and might compute with the arguments, or with constants, before it is
-    // set; what it has to read from memory that somebody may have changed is not known earlier.
-    black_box(body)()
+        // The compiler knows nothing of the word and might compute with the arguments, or with constants, before it is
+        // set; what it has to read from memory that somebody may have changed is not known earlier.
+        black_box(body)
+    };
+    body()
 }
 
 /// MXCSR. The older x87 unit with its own word is used by nobody on this architecture.

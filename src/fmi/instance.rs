@@ -143,7 +143,7 @@ impl Instance {
     }
 
     /// One step from `point` over `step_size`, both in s.
-    #[inline]
+    #[inline(always)]
     pub(super) fn do_step(&mut self, point: f64, step_size: f64) -> Result<(), CallError> {
         let duration = self.communication.duration(point, step_size)?;
         self.model.advance(duration, &mut self.logger)?;

@@ -30,8 +30,18 @@ pub trait SampledModel {
     fn cost_of_tick(&self) -> f64;
 
     /// Refuses a step over `duration` \[s\] that the loop would not bear or that would compute for too long.
-    #[inline]
+    #[inline(always)]
     fn require_acceptable_step(&self, duration: f64) -> Result<(), ModelError> {
+        // Nearly every step.
+        if duration <= ALWAYS_AFFORDABLE * self.clock().period() && duration <= self.longest_step() {
+            return Ok(());
+        }
+        self.require_acceptable_long_step(duration)
+    }
+
+    /// As [`Self::require_acceptable_step`], for every step.
+    #[cold]
+    fn require_acceptable_long_step(&self, duration: f64) -> Result<(), ModelError> {
         let interval = self.clock().period();
         if duration > ALWAYS_AFFORDABLE * interval {
             let cost = self.cost_of_tick().min(LARGEST_COST);
