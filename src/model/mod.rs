@@ -1,6 +1,7 @@
 //! What is exported: per model its variable table, and how plant, observer and law are wired and sampled.
 //! Knows nothing of FMI.
 
+mod accepted_bits;
 pub mod choice;
 mod closed_loop;
 pub mod continuous;

@@ -39,27 +39,11 @@ pub fn is_finite(value: f64) -> bool {
     value.to_bits() & EXPONENT != EXPONENT
 }
 
-/// Whether `value` lies in the range, of whose bounds none is a negative zero, by the bits.
-#[inline]
-fn is_within(value: f64, (minimum, maximum): (f64, f64)) -> bool {
-    const NEGATIVE_ZERO: u64 = 1 << 63;
-    let bits = value.to_bits();
-    let value = order(if bits == NEGATIVE_ZERO { 0 } else { bits });
-    order(minimum.to_bits()) <= value && value <= order(maximum.to_bits())
-}
-
-/// Integers in the order of the numbers with these bits; a negative zero comes before the other one.
-#[inline]
-fn order(bits: u64) -> i64 {
-    let bits = bits as i64;
-    bits ^ (((bits >> 63) as u64) >> 1) as i64
-}
-
 impl Variable {
     /// Whether `value` fits the variable's kind and range.
     #[inline]
     pub fn check(&self, value: f64) -> Result<(), ValueError> {
-        if is_finite(value) && is_within(value, self.range) && !matches!(self.kind, Kind::Enumeration(_)) {
+        if self.accepted.contain(value) {
             return Ok(());
         }
         self.check_item_or_refuse(value)

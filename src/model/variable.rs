@@ -1,5 +1,6 @@
 //! One row of a model's variable table, the single source for value access, model description and documentation.
 
+use super::accepted_bits::AcceptedBits;
 use super::quantity::{Enumeration, Quantity, RATIO, TIME};
 
 /// FMI data type of a variable. Every value is stored as `f64`, which holds integers and enumerations exactly.
@@ -42,6 +43,8 @@ pub struct Variable {
     pub start: f64,
     /// Smallest and largest allowed value in the variable's unit, infinite if there is none.
     pub range: (f64, f64),
+    /// What [`Variable::check`] compares values with.
+    pub(super) accepted: AcceptedBits,
     /// Of a sampled model: names of the variables from which the value at the end of initialisation follows.
     pub initially_from: &'static [&'static str],
     /// Name of the continuous state whose derivative with respect to time this is.
@@ -50,6 +53,11 @@ pub struct Variable {
     pub is_event_indicator: bool,
     /// Whether this is a continuous state that may jump at an event.
     pub is_reinitialised: bool,
+}
+
+/// What a variable of this kind takes at once: nothing of an enumeration, whose items are looked at one by one.
+const fn accepted(kind: &Kind, range: (f64, f64)) -> AcceptedBits {
+    if matches!(kind, Kind::Enumeration(_)) { AcceptedBits::NONE } else { AcceptedBits::of(range) }
 }
 
 impl Variable {
@@ -62,6 +70,7 @@ impl Variable {
             variability,
             start: 0.0,
             range: (f64::NEG_INFINITY, f64::INFINITY),
+            accepted: accepted(&kind, (f64::NEG_INFINITY, f64::INFINITY)),
             initially_from: &[],
             derivative_of: None,
             is_event_indicator: false,
@@ -118,6 +127,7 @@ impl Variable {
     pub const fn range(mut self, minimum: f64, maximum: f64) -> Self {
         // What is added makes a negative zero a positive one, which bounds are compared as.
         self.range = (minimum + 0.0, maximum + 0.0);
+        self.accepted = accepted(&self.kind, self.range);
         self
     }
 
