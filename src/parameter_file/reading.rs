@@ -21,6 +21,11 @@ impl ParameterFile {
             return Err(ParameterFileError::Encoding { path: path.to_owned() });
         }
         let text = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&bytes);
+        // serde takes an array of a structure's fields for the structure.
+        if text.trim_ascii_start().first().is_some_and(|first| *first != b'{') {
+            let reason = "expected an object, {\"model\": NAME, \"values\": {...}}".to_owned();
+            return Err(ParameterFileError::Syntax { path: path.to_owned(), reason });
+        }
         serde_json::from_slice(text).map_err(|error| ParameterFileError::Syntax {
             path: path.to_owned(),
             reason: with_causes(&error),
@@ -80,6 +85,15 @@ mod tests {
         let older = PLAIN.replace("\"model\"", "\"unit\"");
         assert_ne!(older, PLAIN);
         assert_eq!(read_bytes(older.as_bytes()).unwrap(), read_bytes(PLAIN.as_bytes()).unwrap());
+    }
+
+    /// Guards: an array of the fields in their order, which other readers of such files refuse.
+    #[test]
+    fn what_is_no_object_is_refused() {
+        for text in [r#"["MagneticBearingController", {"sample_time": 0.001}]"#, "\n 1", "null"] {
+            let message = with_causes(&read_bytes(text.as_bytes()).unwrap_err());
+            assert!(message.contains("expected an object"), "{message}");
+        }
     }
 
     /// Guards: an unknown key of the file itself that breaks the line of the message.
