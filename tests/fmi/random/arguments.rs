@@ -42,6 +42,12 @@ pub fn judge(oracle: &Oracle, call: &Call, saved: &dyn Fn(usize) -> Option<Model
                 Good
             }
         }
+        // By how much rounding alone carries time past its end is the library's to know.
+        Call::Plain("fmi2EnterEventMode" | "fmi3EnterEventMode") | Call::CompletedStep { .. }
+            if model.state == State::Continuous && model.stop.is_some_and(|stop| model.time > stop) =>
+        {
+            Open
+        }
         Call::Plain(_) | Call::UpdateDiscreteStates { .. } | Call::CompletedStep { .. } | Call::Count(_) => {
             Good
         }
