@@ -100,6 +100,12 @@ pub(super) fn time_from(start: f64, number: i64, period: f64) -> Option<(u64, u6
     Some((u64::try_from(counter / divisor).ok()?, u64::try_from(resolution / divisor).ok()?))
 }
 
+/// As [`time_from`], of a time that is about `shift` \[s\]: where 64 bits are too few for the numbers that `start` and `period`
+/// stand for, a fraction whose quotient is `shift`; 0 for one that is smaller than any fraction.
+pub(super) fn shift_from(start: f64, number: i64, period: f64, shift: f64) -> (u64, u64) {
+    time_from(start, number, period).or_else(|| fraction(shift)).unwrap_or((0, 1))
+}
+
 /// Of two numbers of which the second is not 0.
 fn greatest_common_divisor(mut a: u128, mut b: u128) -> u128 {
     while a != 0 {
@@ -110,7 +116,7 @@ fn greatest_common_divisor(mut a: u128, mut b: u128) -> u128 {
 
 #[cfg(test)]
 mod tests {
-    use super::{fraction, time_from};
+    use super::{fraction, shift_from, time_from};
     use proptest::prelude::*;
 
     #[test]
@@ -156,7 +162,27 @@ mod tests {
         assert_eq!(time_from(f64::MAX, i64::MAX, 1e-4), None);
     }
 
+    /// Guards: an error for a start time that an importer has added up.
+    #[test]
+    fn a_shift_of_any_doubles_has_a_fraction() {
+        let (start, period) = (0.1 + 0.2, 7e-4);
+        let shift = 429.0 * period - start;
+        assert_eq!(time_from(start, 429, period), None);
+        let (counter, resolution) = shift_from(start, 429, period, shift);
+        assert_eq!(counter as f64 / resolution as f64, shift);
+        assert_eq!(shift_from(9.999_999_999_999_999e-7, 1, 1e-6, 1e-22), (0, 1));
+    }
+
     proptest! {
+        #[test]
+        fn every_shift_has_one(start in -1e3..1e3f64, period in 1e-6..1.0f64) {
+            let number = (start / period).ceil() as i64;
+            let shift = (number as f64 * period - start).max(0.0);
+            let (counter, resolution) = shift_from(start, number, period, shift);
+            let rounding = 4.0 * f64::EPSILON * (start.abs() + period);
+            prop_assert!((counter as f64 / resolution as f64 - shift).abs() <= rounding);
+        }
+
         #[test]
         fn times_are_those_of_the_doubles(start in 0.0..1e3f64, steps in 0i64..10_000, period in 1e-6..10.0f64) {
             let number = (start / period) as i64 + 1 + steps;

@@ -8,7 +8,7 @@
 //! tick that is still due when it leaves event mode. The outputs follow from the state alone and never, at one instant,
 //! from the inputs: a loop through a plant is no algebraic loop. The clock `ticked` is active while `tick` is.
 
-use super::fraction::time_from;
+use super::fraction::shift_from;
 use super::{CallError, Instance, Interface, Phase};
 use crate::model::sampled::{CLOCKS, SAMPLE_TIME, TICK, TICKED};
 use crate::model::{Model, SampledModel, TIME};
@@ -33,8 +33,8 @@ pub(super) struct Timing {
     pub interval: f64,
     /// Time from the start to the first tick \[s\].
     pub shift: f64,
-    /// `shift` as a fraction of seconds, if 64 bits suffice.
-    pub shift_fraction: Option<(u64, u64)>,
+    /// The same as a fraction of seconds.
+    pub shift_fraction: (u64, u64),
 }
 
 /// What an importer learns from a step.
@@ -166,11 +166,9 @@ impl Instance {
         let start_time = self.start_time;
         let clock = sampled(&mut *self.model)?.clock();
         let interval = clock.period();
-        let shift_fraction = time_from(start_time, clock.next_number(), interval);
-        let shift = match shift_fraction {
-            Some((counter, resolution)) => counter as f64 / resolution as f64,
-            None => (clock.next_time() - start_time).max(0.0),
-        };
+        let about = (clock.next_time() - start_time).max(0.0);
+        let shift_fraction = shift_from(start_time, clock.next_number(), interval, about);
+        let shift = shift_fraction.0 as f64 / shift_fraction.1 as f64;
         Ok(Timing { interval, shift, shift_fraction })
     }
 

@@ -3,8 +3,9 @@
 pub use super::levitated_ball::BALL;
 pub use super::maglev_rig::RIG;
 pub use super::magnetic_bearing::BEARING;
+use super::sampled::SAMPLE_TIME;
 use super::start_values::{StartValueError, StartValues};
-use super::variable::Kind;
+use super::variable::{Kind, required_row};
 use super::{Description, ModelType};
 
 /// A plant with its controller. All wires carry reals.
@@ -64,6 +65,12 @@ pub const USE_APPLIED_VOLTAGE: (&str, Start) = ("observer.voltage_source", Start
 /// Communication steps that a controller waits for the first values, which are zeros in some masters.
 const STEPS_TO_THE_FIRST_VALUES: f64 = 1.0;
 
+/// Row of all controllers.
+const START_DELAY: &str = "start_delay";
+
+/// Share by which the sample time may miss a multiple of the step by rounding.
+const ROUNDING: f64 = 1e-9;
+
 /// All systems of the library's own models, in the order of these.
 pub static SYSTEMS: &[&System] = &[&BEARING, &BALL, &RIG];
 
@@ -95,6 +102,15 @@ impl System {
         self.plant.description.step_size.min(self.controller.description.step_size)
     }
 
+    /// The same where the controller starts with these values: no longer than its sample time, which is a multiple of it.
+    pub fn step_size_with(&self, controller_values: &StartValues) -> f64 {
+        let row = required_row(self.controller.description.variables, SAMPLE_TIME);
+        let sample_time = controller_values.of(row, &self.controller.description.variables[row]);
+        let (step_size, steps) = (self.step_size(), sample_time / self.step_size());
+        let is_multiple = steps > 0.5 && (steps - libm::round(steps)).abs() <= ROUNDING * steps;
+        if is_multiple { step_size } else { sample_time / libm::ceil(steps) }
+    }
+
     /// Suggested end of a simulation \[s\].
     pub fn stop_time(&self) -> f64 {
         self.plant.description.stop_time.max(self.controller.description.stop_time)
@@ -118,9 +134,25 @@ impl System {
         }
         if is(self.controller) {
             values.set(description, "longest_step", self.longest_step)?;
-            values.set(description, "start_delay", STEPS_TO_THE_FIRST_VALUES * self.step_size())?;
+            values.set(description, START_DELAY, STEPS_TO_THE_FIRST_VALUES * self.step_size())?;
         }
         Ok(values)
+    }
+}
+
+impl System {
+    /// As [`Self::start_values`], with those that somebody wants instead: what follows from them follows.
+    pub fn start_values_with(
+        &self,
+        description: &'static Description,
+        wanted: &StartValues,
+    ) -> Result<StartValues, StartValueError> {
+        let mut values = self.start_values(description)?;
+        if core::ptr::eq(self.controller.description, description) {
+            let delay = STEPS_TO_THE_FIRST_VALUES * self.step_size_with(wanted);
+            values.set(description, START_DELAY, delay)?;
+        }
+        Ok(values.overridden_by(wanted)?)
     }
 }
 

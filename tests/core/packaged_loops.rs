@@ -1,17 +1,25 @@
 //! The loops of the system packages with their start values, in a master as packages get: all models step at once, then
 //! exchange, and wires carry zeros in the first step. Not the bits are looked at but the physics.
 
-use maglev_fmu::model::system::{BALL, BEARING, RIG, System};
-use maglev_fmu::model::{ClosedLoop, ExchangeOrder, ModelError, ModelType};
+use maglev_fmu::model::system::{BALL, BEARING, RIG, SYSTEMS, System};
+use maglev_fmu::model::{ClosedLoop, ExchangeOrder, ModelError, ModelType, StartValues};
 use maglev_fmu_test::closed_loop::closed_loop;
 use maglev_fmu_test::values::{get, set};
 
 /// The models as a package of a system starts them. Wires carry zeros before the first exchange.
 fn started(system: &System, step_size: f64) -> ClosedLoop {
+    started_with(system, StartValues::TABLE, step_size)
+}
+
+/// The same in a package with these values for the controller.
+fn started_with(system: &System, controller: &StartValues, step_size: f64) -> ClosedLoop {
     let mut models = ClosedLoop::of(system, ExchangeOrder::Parallel);
     models.step_size = step_size;
     for model in [&mut models.plant, &mut models.controller] {
-        system.start_values(model.description()).unwrap().apply(&mut **model);
+        let description = model.description();
+        let is_controller = std::ptr::eq(description, system.controller.description);
+        let wanted = if is_controller { controller } else { StartValues::TABLE };
+        system.start_values_with(description, wanted).unwrap().apply(&mut **model);
         model.initialise(0.0).unwrap();
     }
     for wire in system.wires() {
@@ -158,5 +166,48 @@ fn zeros_of_the_first_step_are_no_measurements() {
         let estimates = &Run::column(&run.controller, 0)[1..];
         let bound = 2.0 * largest(&Run::column(&run.plant, 0)).max(1e-3);
         assert!(estimates.iter().all(|estimate| estimate.abs() < bound), "{name}: {estimates:?}");
+    }
+}
+
+/// Guards: packages with another sample time that named the step of the table, which lost the rotor (271 m after 2 s).
+#[test]
+fn another_sample_time_brings_its_own_step() {
+    for (system, sample_time, step_size) in
+        [(&BEARING, 5e-4, 5e-4), (&BEARING, 2.5e-4, 2.5e-4), (&RIG, 5e-4, 5e-4), (&BALL, 2e-4, 1e-4)]
+    {
+        let mut wanted = StartValues::default();
+        wanted.set(system.controller.description, "sample_time", sample_time).unwrap();
+        assert_eq!(system.step_size_with(&wanted), step_size, "{}", system.name);
+        let mut models = started_with(system, &wanted, step_size);
+        assert_eq!(get(&*models.controller, "start_delay"), step_size);
+        for _ in 0..(2.0 / step_size).round() as usize {
+            models.step().unwrap();
+        }
+        let (output, bound) = match system.name {
+            "bearing" => ("position", 0.02),
+            "ball" => ("position", 1e-4),
+            _ => ("sensor_voltage", 1e-3),
+        };
+        let reached = get(&*models.plant, output);
+        assert!(reached.abs() < bound, "{}, T = {sample_time} s: {output} = {reached}", system.name);
+    }
+}
+
+#[test]
+fn the_step_of_a_package_divides_its_sample_time() {
+    for system in SYSTEMS {
+        let suggested = system.step_size();
+        assert_eq!(system.step_size_with(StartValues::TABLE), suggested);
+        for factor in [1e-3, 0.3, 0.7, 1.0, 1.5, 2.0, 3.0, 7.3, 1000.0] {
+            let mut wanted = StartValues::default();
+            let sample_time = factor * suggested;
+            if wanted.set(system.controller.description, "sample_time", sample_time).is_err() {
+                continue;
+            }
+            let step_size = system.step_size_with(&wanted);
+            let steps = sample_time / step_size;
+            assert!(step_size <= suggested * (1.0 + 1e-12) && step_size > 0.49 * suggested.min(sample_time));
+            assert!((steps - steps.round()).abs() < 1e-9 * steps, "{} {factor}: {step_size}", system.name);
+        }
     }
 }

@@ -90,6 +90,12 @@ fn shifts_are_exact() {
         let told = timing(&initialising(sample_time, start_time)).unwrap();
         assert_eq!((told.0[1], told.1[1]), (shift, fraction), "{sample_time} {start_time}");
     }
+    // Where 64 bits are too few for the fraction of what the numbers stand for, that of the difference of the doubles.
+    let (sample_time, start_time) = (7e-4, 0.1 + 0.2);
+    let told = timing(&initialising(sample_time, start_time)).unwrap();
+    let (counter, resolution) = told.1[1];
+    assert_eq!(told.0[1], 429.0 * sample_time - start_time);
+    assert_eq!(counter as f64 / resolution as f64, told.0[1]);
 }
 
 #[test]

@@ -63,11 +63,32 @@ fn start_values_of_the_user_go_before_those_of_the_system() {
     wanted.set(model, "observer.voltage_source", 1.0).unwrap();
     wanted.set(model, "controller.k1", 2.0).unwrap();
     let directory = packages_with(&[(model, wanted.clone())]);
-    let expected = BEARING.start_values(model).unwrap().overridden_by(&wanted).unwrap();
+    let expected = BEARING.start_values_with(model, &wanted).unwrap();
     assert!(expected.token(model, Edition::Plain).contains("=2.0"));
     for form in SystemForm::ALL {
         let fmu = bytes(&path(directory.path(), form, &BEARING), &inside(model));
         assert_eq!(token(&description_inside(fmu)), expected.token(model, Edition::Plain));
+    }
+}
+
+/// Guards: packages with another sample time that named the step of the table.
+#[test]
+fn another_sample_time_brings_its_own_step() {
+    let model = BEARING.controller.description;
+    let mut wanted = StartValues::default();
+    wanted.set(model, "sample_time", 5e-4).unwrap();
+    let directory = packages_with(&[(model, wanted.clone())]);
+    let expected = BEARING.start_values_with(model, &wanted).unwrap();
+    for form in SystemForm::ALL {
+        let package = path(directory.path(), form, &BEARING);
+        assert_eq!(
+            token(&description_inside(bytes(&package, &inside(model)))),
+            expected.token(model, Edition::Plain)
+        );
+        let structure = String::from_utf8(bytes(&package, "SystemStructure.ssd")).unwrap();
+        for step in ["baseStepSize=\"0.0005\"", "stepSize=\"0.0005\""] {
+            assert!(structure.contains(step), "{structure}");
+        }
     }
 }
 

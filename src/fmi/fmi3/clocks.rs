@@ -155,10 +155,7 @@ pub unsafe extern "C-unwind" fn fmi3GetShiftFraction(
             let resolutions = output(resolutions, count, "resolutions")?;
             require_clocks(instance, references)?;
             for (index, reference) in references.iter().enumerate() {
-                let timing = instance.timing(*reference)?;
-                (counters[index], resolutions[index]) = timing
-                    .shift_fraction
-                    .ok_or(CallError::NoFraction { name: "shift", value: timing.shift })?;
+                (counters[index], resolutions[index]) = instance.timing(*reference)?.shift_fraction;
             }
             Ok(())
         })

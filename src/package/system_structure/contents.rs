@@ -21,10 +21,15 @@ pub fn contents(
     time: GenerationTime,
     libraries: &[Library],
 ) -> Result<Vec<Entry<'static>>, PackageError> {
-    let structure = system_structure_description(system, form, time);
+    let wanted = |description: &'static Description| {
+        let own = start_values.iter().find(|(model, _)| std::ptr::eq(*model, description));
+        own.map_or(StartValues::TABLE, |(_, values)| values)
+    };
+    let step_size = system.step_size_with(wanted(system.controller.description));
+    let structure = system_structure_description(system, form, step_size, time);
     let mut entries = vec![
         Entry::document("SystemStructure.ssd".to_owned(), owned(structure)),
-        Entry::document("documentation/index.html".to_owned(), owned(page(system, form, time))),
+        Entry::document("documentation/index.html".to_owned(), owned(page(system, form, step_size, time))),
         Entry::document(
             format!("documentation/{}", diagram_name(system.name)),
             owned(loop_diagram(system, None)),
@@ -32,14 +37,9 @@ pub fn contents(
     ];
     for component in Component::all_of(system) {
         let description = component.model.description;
-        let mut values = system
-            .start_values(description)
+        let values = system
+            .start_values_with(description, wanted(description))
             .map_err(|source| PackageError::SystemStart { system: system.name, source })?;
-        if let Some((_, wanted)) = start_values.iter().find(|(model, _)| std::ptr::eq(*model, description)) {
-            values = values
-                .overridden_by(wanted)
-                .map_err(|source| PackageError::SystemStart { system: system.name, source: source.into() })?;
-        }
         let model = model_package(description, &values, form.of_models(), time, libraries)?;
         entries.push(Entry::document(component.model_path(), model.into()));
         let parameters = parameter_set(system, description, &values, form, time);

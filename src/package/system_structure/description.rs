@@ -14,8 +14,13 @@ use crate::package::xml::{Writer, attribute, document, element, empty_element, o
 /// Namespace of the elements with the prefix `ssd`.
 const NAMESPACE: &str = "http://ssp-standard.org/SSP1/SystemStructureDescription";
 
-/// The document `ssd:SystemStructureDescription`.
-pub fn system_structure_description(system: &System, form: SystemForm, time: GenerationTime) -> String {
+/// The document `ssd:SystemStructureDescription`, with a communication step \[s\].
+pub fn system_structure_description(
+    system: &System,
+    form: SystemForm,
+    step_size: f64,
+    time: GenerationTime,
+) -> String {
     let attributes = [
         attribute("xmlns:ssd", NAMESPACE),
         attribute("xmlns:ssc", type_definitions::NAMESPACE),
@@ -27,10 +32,10 @@ pub fn system_structure_description(system: &System, form: SystemForm, time: Gen
     ];
     let components = Component::all_of(system);
     document("ssd:SystemStructureDescription", attributes.into_iter().chain(origin(Some(time))), |writer| {
-        system_element(writer, system, &components, form)?;
+        system_element(writer, system, &components, form, step_size)?;
         let connectors = components.iter().flat_map(|component| component.connectable(form));
         units(writer, "ssd:Units", connectors)?;
-        default_experiment(writer, system)
+        default_experiment(writer, system, step_size)
     })
 }
 
@@ -40,6 +45,7 @@ fn system_element(
     system: &System,
     components: &[Component; 2],
     form: SystemForm,
+    step_size: f64,
 ) -> io::Result<()> {
     let [plant, controller] = [system.plant, system.controller].map(|model| model.description.name);
     let attributes =
@@ -53,7 +59,7 @@ fn system_element(
             columns.try_for_each(|(component, column)| component_element(writer, component, column, form))
         })?;
         connections(writer, components, form)?;
-        system_annotations(writer, system)
+        system_annotations(writer, step_size)
     })
 }
 

@@ -13,12 +13,12 @@ pub const OMSIMULATOR_NAMESPACE: &str =
     "https://raw.githubusercontent.com/OpenModelica/OMSimulator/master/schema/oms.xsd";
 
 /// `ssd:DefaultExperiment`, with what libcosim reads.
-pub fn default_experiment(writer: &mut Writer, system: &System) -> io::Result<()> {
+pub fn default_experiment(writer: &mut Writer, system: &System, step_size: f64) -> io::Result<()> {
     let attributes = [attribute("startTime", real(0.0)), attribute("stopTime", real(system.stop_time()))];
     element(writer, "ssd:DefaultExperiment", attributes, |writer| {
         annotations(writer, "com.opensimulationplatform", |writer| {
             element(writer, "osp:Algorithm", [], |writer| {
-                let step = attribute("baseStepSize", real(system.step_size()));
+                let step = attribute("baseStepSize", real(step_size));
                 empty_element(writer, "osp:FixedStepAlgorithm", [step])
             })
         })
@@ -26,11 +26,11 @@ pub fn default_experiment(writer: &mut Writer, system: &System) -> io::Result<()
 }
 
 /// What OMSimulator reads, on the system.
-pub fn system_annotations(writer: &mut Writer, system: &System) -> io::Result<()> {
+pub fn system_annotations(writer: &mut Writer, step_size: f64) -> io::Result<()> {
     let master = [
         // OMSimulator's name of the master that steps all models, then exchanges.
         attribute("description", "oms-ma"),
-        attribute("stepSize", real(system.step_size())),
+        attribute("stepSize", real(step_size)),
         // Read, though a fixed step does not use it.
         attribute("relativeTolerance", "1e-4"),
     ];

@@ -6,8 +6,8 @@ use crate::package::GenerationTime;
 use crate::package::documentation::STYLE;
 use crate::package::loop_diagram::diagram_name;
 
-/// The page as HTML.
-pub fn page(system: &System, form: SystemForm, time: GenerationTime) -> String {
+/// The page as HTML, with the communication step \[s\].
+pub fn page(system: &System, form: SystemForm, step_size: f64, time: GenerationTime) -> String {
     let diagram = diagram_name(system.name);
     let [controller, plant] = [system.controller, system.plant].map(|model| model.description);
     let (controller_name, plant_name) = (controller.name, plant.name);
@@ -43,7 +43,7 @@ every importer takes these files with enumerations; set them in the tool.</p>
 ",
         controller.summary,
         plant.summary,
-        system.step_size(),
+        step_size,
         env!("CARGO_PKG_VERSION"),
         name = system.name,
         remark = system.remark,
