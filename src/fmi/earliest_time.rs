@@ -30,6 +30,11 @@ impl EarliestTime {
         self.time
     }
 
+    /// Whether a step was completed, or an event was, at this `time` \[s\].
+    pub fn has_stood_at(&self, time: f64) -> bool {
+        self.last_completed == time
+    }
+
     pub fn is_finite(&self) -> bool {
         self.time.is_finite() && self.last_completed.is_finite()
     }

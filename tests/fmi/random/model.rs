@@ -171,6 +171,8 @@ impl Model {
             "EnterEventMode" => {
                 self.state = State::Event;
                 self.last_event = self.time;
+                // An event that the importer has gone back to takes back the steps that were completed after it.
+                self.completed = self.completed.map(|completed| completed.min(self.time));
                 self.is_settled = false;
                 self.has_event = false;
             }
