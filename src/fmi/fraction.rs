@@ -170,7 +170,7 @@ mod tests {
         assert_eq!(time_from(start, 429, period), None);
         let (counter, resolution) = shift_from(start, 429, period, shift);
         assert_eq!(counter as f64 / resolution as f64, shift);
-        assert_eq!(shift_from(9.999_999_999_999_999e-7, 1, 1e-6, 1e-22), (0, 1));
+        assert_eq!(shift_from(1e-6 * (1.0 - f64::EPSILON), 1, 1e-6, 1e-22), (0, 1));
     }
 
     proptest! {
