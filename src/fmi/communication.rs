@@ -105,8 +105,7 @@ impl CommunicationPoint {
     /// As [`Self::duration`], of a step from a `point` that is not the end of the last step.
     fn duration_after_gap(&self, point: f64, step_size: f64) -> Result<f64, CallError> {
         let gap = point - self.now;
-        // Times round by their own size, be the step as long as it likes; where they come to 0, by the size of those
-        // before.
+        // Times round by their own size, be the step as long as it likes; where they come to 0, by that of those before.
         let largest_time = point.abs().max(self.now.abs());
         let rounding_before = (ROUNDING / HALF_A_UNIT * self.drift).min(TOLERANCE * step_size);
         if gap.abs() <= ROUNDING * largest_time {

@@ -25,14 +25,9 @@ impl EarliestTime {
         *self = Self { time: self.last_completed, last_completed: time };
     }
 
-    /// The earliest time \[s\].
-    pub fn time(&self) -> f64 {
-        self.time
-    }
-
-    /// Whether a step was completed, or an event was, at this `time` \[s\].
-    pub fn has_stood_at(&self, time: f64) -> bool {
-        self.last_completed == time
+    /// Time of the last completed step or, after it, of the last event \[s\].
+    pub fn last_completed(&self) -> f64 {
+        self.last_completed
     }
 
     pub fn is_finite(&self) -> bool {

@@ -49,8 +49,7 @@ impl Callback {
         let (status, text) = (message.status as i32, message.as_ptr());
         let category = LOG_CATEGORIES[message.category].0.as_ptr();
         // SAFETY: the importer has passed callback and environment together; all strings end with NUL and outlive the
-        // call; the format has no conversions,
-        // since % is doubled.
+        // call; the format has no conversions, since % is doubled.
         unsafe {
             match self {
                 Self::None => {}

@@ -48,11 +48,12 @@ impl Instance {
     /// Solvers look past the stop time, since they interpolate back from there; to stay there is an error.
     pub(super) fn require_not_past_stop_time(&self) -> Result<(), CallError> {
         let now = self.communication.now();
-        if self.earliest_time.has_stood_at(now) {
-            // Accepted before, when the way that leads here was known.
+        let last = self.earliest_time.last_completed();
+        if now <= last {
+            // What lies as far was accepted before, when the way that led there was known.
             return Ok(());
         }
-        self.communication.require_before_stop_time("time", now, now - self.earliest_time.time())
+        self.communication.require_before_stop_time("time", now, now - last)
     }
 
     /// Nothing depends on time but through the inputs.

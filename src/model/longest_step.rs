@@ -14,9 +14,12 @@ const ROUNDING: f64 = 1e-8;
 /// Units in the last place of a time by which a step may be off that is the difference of two times.
 const ROUNDING_OF_TIMES: f64 = 4.0;
 
+/// Name of the row.
+pub const NAME: &str = "longest_step";
+
 /// Row of the tables of all controllers; without another start value it refuses nothing.
 pub const fn longest_step() -> Variable {
-    Variable::parameter("longest_step", Kind::Real(&DURATION), 1e9).range(1e-6, 1e9).describe(
+    Variable::parameter(NAME, Kind::Real(&DURATION), 1e9).range(1e-6, 1e9).describe(
         "Longest communication step that is accepted, of effect in co-simulation; inputs and output are held over a \
          step, which loses a loop if it is too long",
     )

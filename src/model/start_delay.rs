@@ -10,9 +10,12 @@ use serde::{Deserialize, Serialize};
 /// Share of a period by which a tick may lie before the end of the delay and still mean it.
 const TOLERANCE: f64 = 1e-4;
 
+/// Name of the row.
+pub const NAME: &str = "start_delay";
+
 /// Row of the tables of all controllers.
 pub const fn start_delay() -> Variable {
-    Variable::parameter("start_delay", Kind::Real(&DURATION), 0.0).range(0.0, 10.0).describe(
+    Variable::parameter(NAME, Kind::Real(&DURATION), 0.0).range(0.0, 10.0).describe(
         "Time from the start during which ticks do nothing; one communication step where a master passes zeros \
          before the first",
     )

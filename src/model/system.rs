@@ -6,7 +6,7 @@ pub use super::magnetic_bearing::BEARING;
 use super::sampled::SAMPLE_TIME;
 use super::start_values::{StartValueError, StartValues};
 use super::variable::{Kind, required_row};
-use super::{Description, ModelType};
+use super::{Description, ModelType, longest_step, start_delay};
 
 /// A plant with its controller. All wires carry reals.
 #[derive(Debug)]
@@ -65,9 +65,6 @@ pub const USE_APPLIED_VOLTAGE: (&str, Start) = ("observer.voltage_source", Start
 /// Communication steps that a controller waits for the first values, which are zeros in some masters.
 const STEPS_TO_THE_FIRST_VALUES: f64 = 1.0;
 
-/// Row of all controllers.
-const START_DELAY: &str = "start_delay";
-
 /// Share by which the sample time may miss a multiple of the step by rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -118,6 +115,15 @@ impl System {
 
     /// With what a model of this system starts in a package of it; any other model as its table says.
     pub fn start_values(&self, description: &'static Description) -> Result<StartValues, StartValueError> {
+        self.start_values_with(description, StartValues::TABLE)
+    }
+
+    /// The same where somebody wants these values instead, from which others may follow.
+    pub fn start_values_with(
+        &self,
+        description: &'static Description,
+        wanted: &StartValues,
+    ) -> Result<StartValues, StartValueError> {
         let mut values = StartValues::default();
         let is = |model: &ModelType| core::ptr::eq(model.description, description);
         let starts = if is(self.plant) {
@@ -133,24 +139,9 @@ impl System {
             values.set(description, name, number.unwrap_or(f64::NAN))?;
         }
         if is(self.controller) {
-            values.set(description, "longest_step", self.longest_step)?;
-            values.set(description, START_DELAY, STEPS_TO_THE_FIRST_VALUES * self.step_size())?;
-        }
-        Ok(values)
-    }
-}
-
-impl System {
-    /// As [`Self::start_values`], with those that somebody wants instead: what follows from them follows.
-    pub fn start_values_with(
-        &self,
-        description: &'static Description,
-        wanted: &StartValues,
-    ) -> Result<StartValues, StartValueError> {
-        let mut values = self.start_values(description)?;
-        if core::ptr::eq(self.controller.description, description) {
             let delay = STEPS_TO_THE_FIRST_VALUES * self.step_size_with(wanted);
-            values.set(description, START_DELAY, delay)?;
+            values.set(description, longest_step::NAME, self.longest_step)?;
+            values.set(description, start_delay::NAME, delay)?;
         }
         Ok(values.overridden_by(wanted)?)
     }
@@ -214,8 +205,8 @@ mod tests {
                 panic!("an enumeration")
             };
             assert_eq!(enumeration.items[number as usize - 1].0, item);
-            assert_eq!(value(system.controller, "start_delay").0, system.step_size());
-            assert!(value(system.controller, "longest_step").0 >= system.step_size());
+            assert_eq!(value(system.controller, start_delay::NAME).0, system.step_size());
+            assert!(value(system.controller, longest_step::NAME).0 >= system.step_size());
         }
         let elsewhere = BEARING.start_values(BALL.controller.description).unwrap();
         assert_eq!(elsewhere, *StartValues::TABLE);

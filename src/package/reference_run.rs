@@ -242,7 +242,7 @@ fn apply_starts_of_partner(
     start_values: &StartValues,
     closed_loop: &mut ClosedLoop,
 ) {
-    let own = system.start_values(description);
+    let own = system.start_values_with(description, start_values);
     if own.is_ok_and(|own| own != *StartValues::TABLE && start_values.include(&own)) {
         for model in [&mut closed_loop.plant, &mut closed_loop.controller] {
             // What cannot be packaged has been refused before.
@@ -259,8 +259,11 @@ mod tests {
     #[test]
     fn models_of_a_system_meet_each_other() {
         let rig = System::find("rig").unwrap();
-        for model in [rig.plant, rig.controller] {
-            let starts = rig.start_values(model.description).unwrap();
+        let mut faster = StartValues::default();
+        faster.set(rig.controller.description, "sample_time", 5e-4).unwrap();
+        let table = StartValues::TABLE;
+        for (model, wanted) in [(rig.plant, table), (rig.controller, table), (rig.controller, &faster)] {
+            let starts = rig.start_values_with(model.description, wanted).unwrap();
             let run = ReferenceRun::of(model.description, &starts).unwrap();
             for table in [&run.inputs, &run.outputs] {
                 let sensor =

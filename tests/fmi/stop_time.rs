@@ -121,6 +121,10 @@ fn an_integration_ends_at_the_stop_time_though_its_solver_looks_beyond() {
         assert_eq!(component.set_time(9e-3), OK);
         assert_eq!(component.complete_integrator_step(), OK);
         component.recorder.clear();
+        // Guards: rounding measured by the way since the step before the last one.
+        assert_eq!(component.set_time(STOP + 1.5 * ROUNDING), OK);
+        component.assert_refused(component.complete_integrator_step(), &["past the stop time"]);
+        component.assert_refused(component.enter_event_mode(), &["past the stop time"]);
         assert_eq!(component.set_time(0.02), OK);
         assert!(component.derivatives().iter().all(|rate| rate.is_finite()));
         let said = "time = 0.02 s is past the stop time: expected at most 0.01 s";

@@ -2,7 +2,7 @@
 
 use crate::model::sampled::SAMPLE_TIME;
 use crate::model::variable::{Variable, required_row};
-use crate::model::{Description, LogSink, ModelError};
+use crate::model::{Description, LogSink, ModelError, longest_step, start_delay};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -27,8 +27,8 @@ impl ControllerRows {
     pub const fn of(variables: &[Variable]) -> Self {
         Self {
             sample_time: required_row(variables, SAMPLE_TIME),
-            start_delay: required_row(variables, "start_delay"),
-            longest_step: required_row(variables, "longest_step"),
+            start_delay: required_row(variables, start_delay::NAME),
+            longest_step: required_row(variables, longest_step::NAME),
             tick_time: required_row(variables, "tick_time"),
             voltage: required_row(variables, "voltage"),
             voltage_applied: required_row(variables, "voltage_applied"),
