@@ -53,18 +53,17 @@ impl Instance {
             variable.check(convert(*value))?;
             parameters_changed |= variable.causality == Causality::Parameter;
         }
-        let is_before_first_step = matches!(self.phase, Phase::Instantiated | Phase::InitializationMode);
-        if parameters_changed && !is_before_first_step {
+        if parameters_changed && !self.state.phase.is_before_first_step() {
             return self.tune(references.iter().zip(values).map(|(row, value)| (*row, convert(*value))));
         }
         let target = self.model.values_mut();
         for (reference, value) in references.iter().zip(values) {
             target[*reference as usize] = convert(*value);
         }
-        if is_before_first_step {
-            self.needs_initialisation = true;
+        if self.state.phase.is_before_first_step() {
+            self.state.needs_initialisation = true;
         } else {
-            self.needs_evaluation = true;
+            self.state.needs_evaluation = true;
         }
         Ok(())
     }
@@ -86,15 +85,14 @@ impl Instance {
             model.values_mut().copy_from_slice(before);
             return Err(error.into());
         }
-        self.needs_evaluation = true;
+        self.state.needs_evaluation = true;
         Ok(())
     }
 
     /// Calculated values follow parameters and inputs until the first step.
     #[inline]
     pub(super) fn refresh_before_first_step(&mut self) -> Result<(), CallError> {
-        if self.needs_initialisation && matches!(self.phase, Phase::Instantiated | Phase::InitializationMode)
-        {
+        if self.state.needs_initialisation && self.state.phase.is_before_first_step() {
             self.refresh()?;
         }
         Ok(())
@@ -142,7 +140,7 @@ impl Instance {
     /// 4.2.2).
     #[inline]
     fn is_unregistered(&self, reference: u32) -> bool {
-        self.phase == Phase::IntermediateUpdateMode
+        self.state.phase == Phase::IntermediateUpdateMode
             && !self.intermediate_update.is_some_and(|update| update.registered.contains(reference))
     }
 
@@ -156,7 +154,7 @@ impl Instance {
     ) -> Result<(), CallError> {
         let is_continuous_input =
             variable.causality == Causality::Input && variable.variability == Variability::Continuous;
-        if is_continuous_input && self.phase != Phase::IntermediateUpdateMode {
+        if is_continuous_input && self.state.phase != Phase::IntermediateUpdateMode {
             return Ok(());
         }
         self.require_settable_now(standard, reference, variable)
@@ -173,9 +171,9 @@ impl Instance {
         reference: u32,
         variable: &Variable,
     ) -> Result<(), CallError> {
-        let is_initial = matches!(self.phase, Phase::Instantiated | Phase::InitializationMode);
+        let is_initial = self.state.phase.is_before_first_step();
         let is_continuous_time =
-            matches!(self.phase, Phase::ContinuousTimeMode | Phase::IntermediateUpdateMode);
+            matches!(self.state.phase, Phase::ContinuousTimeMode | Phase::IntermediateUpdateMode);
         let why = match (variable.causality, variable.variability) {
             (Causality::Input, Variability::Continuous) if !self.is_unregistered(reference) => return Ok(()),
             (Causality::Input, Variability::Continuous) => {
@@ -189,7 +187,7 @@ impl Instance {
             (Causality::Parameter, _) if is_initial => return Ok(()),
             (Causality::Parameter, _) => "a fixed parameter",
             (Causality::Independent, _) => "the independent variable",
-            _ if self.rows.states().contains(&(reference as usize)) => match self.phase {
+            _ if self.rows.states().contains(&(reference as usize)) => match self.state.phase {
                 Phase::ContinuousTimeMode => return Ok(()),
                 Phase::EventMode if standard == FmiVersion::Three && !variable.is_reinitialised => {
                     return Ok(());
@@ -198,6 +196,6 @@ impl Instance {
             },
             _ => "calculated by the model",
         };
-        Err(CallError::NotSettable { name: variable.name, why, phase: self.phase.name() })
+        Err(CallError::NotSettable { name: variable.name, why, phase: self.state.phase.name() })
     }
 }

@@ -86,7 +86,7 @@ fn refuse(instance: &mut Instance, function: &Function, error: &CallError) -> St
 
 #[cold]
 fn lose(instance: &mut Instance, function: &Function) -> Status {
-    instance.phase = Phase::Fatal;
+    instance.state.phase = Phase::Fatal;
     let name = function.name;
     let message = format_args!("{name}: internal error, the instance is lost and can only be freed");
     instance.logger.refusal(Status::Fatal, message);

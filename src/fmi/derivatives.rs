@@ -127,7 +127,7 @@ impl Instance {
     }
 
     fn is_initialising(&self) -> bool {
-        self.phase == Phase::InitializationMode
+        self.state.phase == Phase::InitializationMode
     }
 }
 

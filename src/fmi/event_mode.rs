@@ -23,8 +23,8 @@ impl Instance {
                 return Err(CallError::NotOffered("event mode, which the instance was not made for"));
             }
         }
-        self.earliest_time = EarliestTime::at_event(self.communication.now());
-        self.phase = Phase::EventMode;
+        self.state.earliest_time = EarliestTime::at_event(self.state.communication.now());
+        self.state.phase = Phase::EventMode;
         Ok(())
     }
 
@@ -34,7 +34,7 @@ impl Instance {
         if self.interface == Interface::ModelExchange {
             return self.update_states_of_integration();
         }
-        let is_active = core::mem::take(&mut self.clocks.is_tick_active);
+        let is_active = core::mem::take(&mut self.state.clocks.is_tick_active);
         if is_active {
             self.run_due_tick()?;
         }
@@ -60,8 +60,8 @@ impl Instance {
         }
         // Of an importer that knows no clocks, or left the event without another update.
         self.run_due_tick()?;
-        self.clocks.is_tick_active = false;
-        self.phase = Phase::StepMode;
+        self.state.clocks.is_tick_active = false;
+        self.state.phase = Phase::StepMode;
         Ok(())
     }
 }

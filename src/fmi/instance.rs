@@ -2,13 +2,11 @@
 
 use core::fmt;
 
-use super::earliest_time::EarliestTime;
 use super::floating_point::in_default_environment;
 use super::fmi3::types::{fmi3ClockUpdateCallback, fmi3InstanceEnvironment};
+use super::instance_state::InstanceState;
 use super::intermediate_update::{IntermediateUpdate, StepInProgress};
-use super::saved_state::InstanceState;
-use super::ticking::ClockStates;
-use super::{CallError, CommunicationPoint, Function, Interface, Logger, Phase, SavedState, StateError};
+use super::{CallError, Function, Interface, Logger, Phase, SavedState, StateError};
 use crate::model::sampled::ClockVariable;
 use crate::model::variable::Variable;
 use crate::model::{ContinuousRows, Edition, LogSink, Model, Solver, TIME, Topic};
@@ -24,17 +22,8 @@ pub struct Instance {
     /// Where the table holds what moves in continuous time.
     pub(super) rows: ContinuousRows,
     pub(super) interface: Interface,
-    pub(super) phase: Phase,
     pub(super) logger: Logger,
-    pub(super) communication: CommunicationPoint,
-    /// How far an importer that integrates the model may go back.
-    pub(super) earliest_time: EarliestTime,
-    pub(super) start_time: f64,
-    /// Whether a value was set since the calculated ones were last computed, before the first step.
-    pub(super) needs_initialisation: bool,
-    /// Whether a state or an input was set since what follows from them was last computed, after initialisation.
-    pub(super) needs_evaluation: bool,
-    pub(super) clocks: ClockStates,
+    pub(super) state: InstanceState,
     /// How the importer wants to be called back within a step.
     pub(super) intermediate_update: Option<IntermediateUpdate>,
     /// The step within which it is called back.
@@ -55,14 +44,8 @@ impl Instance {
             model,
             edition: Edition::Plain,
             interface,
-            phase: Phase::Instantiated,
             logger,
-            communication: CommunicationPoint::new(0.0, None),
-            earliest_time: EarliestTime::at_event(0.0),
-            start_time: 0.0,
-            needs_initialisation: true,
-            needs_evaluation: false,
-            clocks: ClockStates::default(),
+            state: InstanceState::new(),
             intermediate_update: None,
             step: None,
             clock_update: None,
@@ -75,12 +58,12 @@ impl Instance {
 
     #[inline]
     pub(super) fn require(&self, function: &Function) -> Result<(), CallError> {
-        if function.is_allowed_in(self.phase) {
+        if function.is_allowed_in(self.state.phase) {
             Ok(())
         } else if function.is_back_from_callback {
-            Err(CallError::LeftByCallback(self.phase.name()))
+            Err(CallError::LeftByCallback(self.state.phase.name()))
         } else {
-            Err(CallError::WrongPhase(self.phase.name()))
+            Err(CallError::WrongPhase(self.state.phase.name()))
         }
     }
 
@@ -100,24 +83,21 @@ impl Instance {
             let expected = "a time not before startTime";
             return Err(CallError::WrongTime { argument: "stopTime", value: stop_time, expected });
         }
-        self.start_time = start_time;
-        self.communication = CommunicationPoint::new(start_time, stop_time);
-        self.earliest_time = EarliestTime::at_event(start_time);
-        self.needs_initialisation = true;
+        self.state.set_experiment(start_time, stop_time);
         Ok(())
     }
 
     pub(super) fn enter_initialization_mode(&mut self) -> Result<(), CallError> {
-        self.phase = Phase::InitializationMode;
-        self.needs_initialisation = true;
+        self.state.phase = Phase::InitializationMode;
+        self.state.needs_initialisation = true;
         Ok(())
     }
 
     /// Computes all calculated values if something changed since the last time.
     pub(super) fn refresh(&mut self) -> Result<(), CallError> {
-        if self.needs_initialisation {
-            in_default_environment(|| self.model.initialise(self.start_time))?;
-            self.needs_initialisation = false;
+        if self.state.needs_initialisation {
+            in_default_environment(|| self.model.initialise(self.state.start_time))?;
+            self.state.needs_initialisation = false;
         }
         Ok(())
     }
@@ -125,19 +105,19 @@ impl Instance {
     /// Computes what follows from states and inputs at this instant if one of them was set, after initialisation.
     #[inline]
     pub(super) fn evaluate(&mut self) {
-        if self.needs_evaluation {
+        if self.state.needs_evaluation {
             if let Some(model) = self.model.continuous() {
                 in_default_environment(|| model.evaluate());
             }
-            self.needs_evaluation = false;
+            self.state.needs_evaluation = false;
         }
     }
 
     pub(super) fn exit_initialization_mode(&mut self) -> Result<(), CallError> {
-        in_default_environment(|| self.model.start(self.start_time))?;
-        self.needs_initialisation = false;
-        self.phase = self.interface.first_phase();
-        let (name, start_time) = (self.model.description().name, self.start_time);
+        in_default_environment(|| self.model.start(self.state.start_time))?;
+        self.state.needs_initialisation = false;
+        self.state.phase = self.interface.first_phase();
+        let (name, start_time) = (self.model.description().name, self.state.start_time);
         self.log_event(format_args!("{name} initialised at t = {start_time} s"));
         Ok(())
     }
@@ -145,17 +125,17 @@ impl Instance {
     /// One step from `point` over `step_size`, both in s.
     #[inline(always)]
     pub(super) fn do_step(&mut self, point: f64, step_size: f64) -> Result<(), CallError> {
-        let duration = self.communication.duration(point, step_size)?;
+        let duration = self.state.communication.duration(point, step_size)?;
         self.model.advance(duration, &mut self.logger)?;
-        self.needs_evaluation = false;
-        self.communication.move_to(point + step_size);
-        self.model.values_mut()[TIME] = self.communication.now();
+        self.state.needs_evaluation = false;
+        self.state.communication.move_to(point + step_size);
+        self.model.values_mut()[TIME] = self.state.communication.now();
         Ok(())
     }
 
     pub(super) fn terminate(&mut self) -> Result<(), CallError> {
-        self.phase = Phase::Terminated;
-        self.log_event(format_args!("terminated at t = {} s", self.communication.now()));
+        self.state.phase = Phase::Terminated;
+        self.log_event(format_args!("terminated at t = {} s", self.state.communication.now()));
         Ok(())
     }
 
@@ -171,52 +151,13 @@ impl Instance {
         self.edition.clocks(self.model.description())
     }
 
-    /// What a saved state has to tell besides the model.
-    pub(super) fn instance_state(&self) -> InstanceState {
-        let Self {
-            phase,
-            communication,
-            earliest_time,
-            start_time,
-            needs_initialisation,
-            needs_evaluation,
-            clocks,
-            ..
-        } = *self;
-        InstanceState {
-            phase,
-            communication,
-            earliest_time,
-            start_time,
-            needs_initialisation,
-            needs_evaluation,
-            clocks,
-        }
-    }
-
     /// Goes on from a saved state; the model has been restored.
-    pub(super) fn resume(&mut self, instance_state: InstanceState) {
-        let InstanceState {
-            phase,
-            communication,
-            earliest_time,
-            start_time,
-            needs_initialisation,
-            needs_evaluation,
-            clocks,
-        } = instance_state;
-        self.phase = phase;
-        self.communication = communication;
-        self.earliest_time = earliest_time;
-        self.start_time = start_time;
-        self.needs_initialisation = needs_initialisation;
-        self.needs_evaluation = needs_evaluation;
-        self.clocks = clocks;
+    pub(super) fn resume(&mut self, state: InstanceState) {
+        self.state = state;
         self.step = None;
         // The state may be that of an instance with another interface.
         let is_new = say_who_solves(&mut *self.model, self.interface);
-        self.needs_initialisation |=
-            is_new && matches!(phase, Phase::Instantiated | Phase::InitializationMode);
+        self.state.needs_initialisation |= is_new && self.state.phase.is_before_first_step();
     }
 
     pub(super) fn log_event(&mut self, message: fmt::Arguments<'_>) {

@@ -87,7 +87,7 @@ impl Instance {
         point: f64,
         step_size: f64,
     ) -> Result<Progress, CallError> {
-        let duration = self.communication.duration(point, step_size)?;
+        let duration = self.state.communication.duration(point, step_size)?;
         let model = sampled(&mut *self.model)?;
         // Refuses what `Model::advance` would refuse; the ticks are counted one by one below.
         model.require_acceptable_step(duration)?;
@@ -107,7 +107,7 @@ impl Instance {
         let (Some(mut step), Some(update)) = (self.step.take(), self.intermediate_update) else {
             return Err(CallError::NotOffered("no step is in progress"));
         };
-        self.phase = Phase::StepMode;
+        self.state.phase = Phase::StepMode;
         let early_return = early_return.filter(|_| update.may_return_early);
         // Not a number counts as now.
         let early_return = early_return.map(|time| if time > step.time { time } else { step.time });
@@ -134,7 +134,7 @@ impl Instance {
             step.rest -= wait;
             step.time = clock.next_time().max(step.time).min(step.end);
             self.model.values_mut()[TIME] = step.time;
-            self.phase = Phase::IntermediateUpdateMode;
+            self.state.phase = Phase::IntermediateUpdateMode;
             self.step = Some(step);
             return Ok(Progress::Waits(update, step.time));
         }
@@ -144,7 +144,7 @@ impl Instance {
             None => clock.pass(step.rest),
         }
         let is_event = matches!(self.interface, Interface::CoSimulationWithEvents { .. }) && clock.is_due();
-        self.communication.move_to(step.end);
+        self.state.communication.move_to(step.end);
         self.model.values_mut()[TIME] = step.end;
         Ok(Progress::Done(StepEnd { is_event, is_early: step.final_clock.is_none() }))
     }

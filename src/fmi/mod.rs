@@ -18,6 +18,7 @@ mod form;
 mod fraction;
 mod function_names;
 mod instance;
+mod instance_state;
 mod instantiation;
 mod interface;
 mod intermediate_update;

@@ -27,13 +27,13 @@ impl Instance {
         let model = self.exchanged()?;
         let have_states_changed = model.update_discrete_states();
         let next_event_time = model.next_event_time();
-        self.needs_evaluation = true;
+        self.state.needs_evaluation = true;
         Ok(EventEnd { is_unfinished: false, have_states_changed, next_event_time })
     }
 
     pub(super) fn enter_continuous_time_mode(&mut self) -> Result<(), CallError> {
         self.require_model_exchange()?;
-        self.phase = Phase::ContinuousTimeMode;
+        self.state.phase = Phase::ContinuousTimeMode;
         Ok(())
     }
 
@@ -41,19 +41,19 @@ impl Instance {
     pub(super) fn complete_integrator_step(&mut self) -> Result<(), CallError> {
         self.require_model_exchange()?;
         self.require_not_past_stop_time()?;
-        self.earliest_time.completed_step(self.communication.now());
+        self.state.earliest_time.completed_step(self.state.communication.now());
         Ok(())
     }
 
     /// Solvers look past the stop time, since they interpolate back from there; to stay there is an error.
     pub(super) fn require_not_past_stop_time(&self) -> Result<(), CallError> {
-        let now = self.communication.now();
-        let last = self.earliest_time.last_completed();
+        let now = self.state.communication.now();
+        let last = self.state.earliest_time.last_completed();
         if now <= last {
             // What lies as far was accepted before, when the way that led there was known.
             return Ok(());
         }
-        self.communication.require_before_stop_time("time", now, now - last)
+        self.state.communication.require_before_stop_time("time", now, now - last)
     }
 
     /// Nothing depends on time but through the inputs.
@@ -63,9 +63,9 @@ impl Instance {
             let expected = "a finite time";
             return Err(CallError::WrongTime { argument: "time", value: time, expected });
         }
-        self.earliest_time.check(time)?;
+        self.state.earliest_time.check(time)?;
         self.model.values_mut()[TIME] = time;
-        self.communication.move_to(time);
+        self.state.communication.move_to(time);
         Ok(())
     }
 
@@ -84,7 +84,7 @@ impl Instance {
         for (row, value) in rows.states().iter().zip(states) {
             values[*row] = *value;
         }
-        self.needs_evaluation = true;
+        self.state.needs_evaluation = true;
         Ok(())
     }
 

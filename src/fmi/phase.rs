@@ -27,6 +27,12 @@ pub enum Phase {
 }
 
 impl Phase {
+    /// Start values may still be set.
+    #[inline]
+    pub const fn is_before_first_step(self) -> bool {
+        matches!(self, Self::Instantiated | Self::InitializationMode)
+    }
+
     /// Name for log messages.
     pub const fn name(self) -> &'static str {
         match self {

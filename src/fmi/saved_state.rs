@@ -4,48 +4,14 @@
 //! belongs to the importer, the logger and the instance's name, is not part of it. A state thus fits every instance
 //! of the same model, whatever the version of the standard.
 
-use super::earliest_time::EarliestTime;
+use super::instance_state::InstanceState;
 use super::state_format::{
     CHECKSUM, HEADER, LONGEST_SAVED_STATE, MARK, StateError, TOKEN, TokenName, VERSION,
 };
-use super::ticking::ClockStates;
-use super::{CommunicationPoint, Instance, Interface, Phase};
+use super::{Instance, Interface};
 use crate::model::Description;
-use serde::{Deserialize, Serialize};
 
 const CAPACITY: usize = LONGEST_SAVED_STATE - HEADER;
-
-/// Where an instance stands in its life.
-#[derive(Serialize, Deserialize)]
-pub(super) struct InstanceState {
-    pub phase: Phase,
-    pub communication: CommunicationPoint,
-    pub earliest_time: EarliestTime,
-    pub start_time: f64,
-    /// See [`Instance`].
-    pub needs_initialisation: bool,
-    /// See [`Instance`].
-    pub needs_evaluation: bool,
-    pub clocks: ClockStates,
-}
-
-impl InstanceState {
-    /// Whether an instance that may be in the phases that `reaches` names could have been saved so.
-    fn check(&self, reaches: impl Fn(Phase) -> bool) -> Result<(), StateError> {
-        let Self { phase, start_time, .. } = *self;
-        let now = self.communication.now();
-        if !reaches(phase) {
-            return Err(StateError::OtherPhase { got: phase.name() });
-        }
-        if !(self.communication.is_possible_after(start_time) && self.earliest_time.is_finite()) {
-            return Err(StateError::Times { now, start_time });
-        }
-        if self.needs_initialisation && !matches!(phase, Phase::Instantiated | Phase::InitializationMode) {
-            return Err(StateError::Stale(phase.name()));
-        }
-        Ok(())
-    }
-}
 
 /// What a handle `fmi2FMUstate` or `fmi3FMUState` points to.
 #[repr(C)]
@@ -171,9 +137,8 @@ impl Instance {
         state.model = self.model.description();
         // Nothing to restore, should the rest fail.
         state.length = 0;
-        let length = postcard::to_slice(&self.instance_state(), &mut state.payload)
-            .map_err(|_| StateError::InstanceState)?
-            .len();
+        let length =
+            postcard::to_slice(&self.state, &mut state.payload).map_err(|_| StateError::InstanceState)?.len();
         state.length = length + self.model.save(&mut state.payload[length..])?;
         Ok(())
     }

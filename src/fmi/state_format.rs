@@ -18,7 +18,7 @@ use core::fmt;
 use thiserror::Error;
 
 pub(super) const MARK: [u8; 8] = *b"maglevFS";
-/// To be raised whenever a model's fields or [`super::saved_state::InstanceState`] change.
+/// To be raised whenever a model's fields or [`super::instance_state::InstanceState`] change.
 pub(super) const VERSION: u32 = 5;
 
 pub(super) const TOKEN: core::ops::Range<usize> = 16..54;

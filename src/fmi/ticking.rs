@@ -53,7 +53,7 @@ impl Instance {
             self.do_step(point, step_size)?;
             return Ok(StepEnd { is_event: false, is_early: false });
         };
-        let duration = self.communication.duration(point, step_size)?;
+        let duration = self.state.communication.duration(point, step_size)?;
         let model = sampled(&mut *self.model)?;
         let mut is_early = false;
         match model.clock().until_tick_within(duration) {
@@ -64,15 +64,15 @@ impl Instance {
                 clock.pass(wait);
                 // The importer's time may be off by rounding; a step never goes back nor beyond its end.
                 let reached = clock.next_time().max(point).min(point + step_size);
-                self.communication.move_to(if wait > 0.0 { reached } else { point });
-                is_early = self.communication.now() < point + step_size;
+                self.state.communication.move_to(if wait > 0.0 { reached } else { point });
+                is_early = self.state.communication.now() < point + step_size;
             }
             _ => {
                 self.model.advance(duration, &mut self.logger)?;
-                self.communication.move_to(point + step_size);
+                self.state.communication.move_to(point + step_size);
             }
         }
-        self.model.values_mut()[TIME] = self.communication.now();
+        self.model.values_mut()[TIME] = self.state.communication.now();
         Ok(StepEnd { is_event: sampled(&mut *self.model)?.clock().is_due(), is_early })
     }
 
@@ -81,30 +81,30 @@ impl Instance {
         if self.find_clock(clock)? != TICK {
             return Err(self.no_input_clock());
         }
-        let now = self.communication.now();
-        if !time.is_finite() || time < now || (time == now && self.clocks.was_activated) {
+        let now = self.state.communication.now();
+        if !time.is_finite() || time < now || (time == now && self.state.clocks.was_activated) {
             return Err(CallError::ActivationTime { got: time, last: now });
         }
         let model = sampled(&mut *self.model)?;
-        self.communication.require_before_stop_time("activationTime", time, model.clock().period())?;
+        self.state.communication.require_before_stop_time("activationTime", time, model.clock().period())?;
         let tick_time = model.clock_mut().take_at(time);
         model.tick(tick_time, &mut self.logger);
-        self.communication.move_to(time);
+        self.state.communication.move_to(time);
         self.model.values_mut()[TIME] = time;
-        self.clocks.was_activated = true;
-        self.clocks.is_activation_untold = true;
+        self.state.clocks.was_activated = true;
+        self.state.clocks.is_activation_untold = true;
         Ok(())
     }
 
     /// The importer is told that `ticked` is active.
     pub(super) fn enter_clock_update_mode(&mut self) {
-        self.phase = Phase::ClockUpdateMode;
+        self.state.phase = Phase::ClockUpdateMode;
     }
 
     /// Back from the importer, who may have asked for `ticked` or not.
     pub(super) fn leave_clock_update_mode(&mut self) {
-        self.clocks.is_activation_untold = false;
-        self.phase = Phase::ClockActivationMode;
+        self.state.clocks.is_activation_untold = false;
+        self.state.phase = Phase::ClockActivationMode;
     }
 
     /// Place of the clock with this value reference in the model's clocks.
@@ -118,7 +118,7 @@ impl Instance {
 
     fn no_input_clock(&self) -> CallError {
         let why = "a clock that the model itself activates";
-        CallError::NotSettable { name: CLOCKS[TICKED].name, why, phase: self.phase.name() }
+        CallError::NotSettable { name: CLOCKS[TICKED].name, why, phase: self.state.phase.name() }
     }
 
     /// Activation states. In scheduled execution `ticked` tells of each activation once.
@@ -128,20 +128,20 @@ impl Instance {
         }
         for (value, reference) in values.iter_mut().zip(references) {
             let is_untold = self.find_clock(*reference)? == TICKED
-                && core::mem::take(&mut self.clocks.is_activation_untold);
-            *value = (self.clocks.is_tick_active || is_untold).into();
+                && core::mem::take(&mut self.state.clocks.is_activation_untold);
+            *value = (self.state.clocks.is_tick_active || is_untold).into();
         }
         Ok(())
     }
 
     /// Activates `tick` where a tick is due; [`Instance::update_discrete_states`] runs and deactivates it.
     pub(super) fn set_clocks(&mut self, references: &[u32], values: &[u8]) -> Result<(), CallError> {
-        let mut is_tick_active = self.clocks.is_tick_active;
+        let mut is_tick_active = self.state.clocks.is_tick_active;
         for (reference, value) in references.iter().zip(values) {
             if self.find_clock(*reference)? != TICK {
                 return Err(self.no_input_clock());
             }
-            let now = self.communication.now();
+            let now = self.state.communication.now();
             let clock = sampled(&mut *self.model)?.clock();
             match (*value != 0, clock.is_due()) {
                 (true, true) => is_tick_active = true,
@@ -153,7 +153,7 @@ impl Instance {
                 (false, _) => {}
             }
         }
-        self.clocks.is_tick_active = is_tick_active;
+        self.state.clocks.is_tick_active = is_tick_active;
         Ok(())
     }
 
@@ -163,7 +163,7 @@ impl Instance {
             return Err(self.no_input_clock());
         }
         self.refresh_before_first_step()?;
-        let start_time = self.start_time;
+        let start_time = self.state.start_time;
         let clock = sampled(&mut *self.model)?.clock();
         let interval = clock.period();
         let about = (clock.next_time() - start_time).max(0.0);
@@ -188,7 +188,7 @@ impl Instance {
         }
         if let (Some((row, _)), Some(interval)) = (sample_time, intervals.last()) {
             self.model.values_mut()[row] = interval;
-            self.needs_initialisation = true;
+            self.state.needs_initialisation = true;
         }
         Ok(())
     }

@@ -11,6 +11,7 @@ pub mod claim;
 mod error;
 mod experiments;
 mod findings;
+mod interval;
 mod loop_packages;
 mod metrics;
 pub mod output;

@@ -11,6 +11,7 @@ mod capabilities;
 mod concurrency;
 mod dependencies;
 mod derivatives;
+mod differences;
 mod editions;
 mod event_mode;
 mod failing_memory;
@@ -18,6 +19,7 @@ mod fitting_parameters;
 #[cfg(target_arch = "x86_64")]
 mod floating_point;
 mod harness;
+mod input_slopes;
 mod instantiation;
 mod intermediate_update;
 mod life_cycle;

@@ -8,6 +8,7 @@ mod documents;
 mod library;
 mod library_file;
 mod model_description;
+mod model_structure;
 mod reference_runs;
 mod related_files;
 mod start_values;

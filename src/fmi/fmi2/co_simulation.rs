@@ -66,7 +66,7 @@ pub unsafe extern "C-unwind" fn fmi2GetRealStatus(
     // demands of importers.
     unsafe {
         status(component, &may::GET_REAL_STATUS, kind, FMI2_LAST_SUCCESSFUL_TIME, value, |instance| {
-            instance.communication.now()
+            instance.state.communication.now()
         })
     }
 }

@@ -217,6 +217,6 @@ fn require_clocks(instance: &mut Instance, references: &[u32]) -> Result<(), Cal
 
 /// The importer is told the interval \[s\] of `tick`: whether it is news (FMI 3.0.2, section 2.2.8.4).
 fn tell(instance: &mut Instance, interval: f64) -> fmi3IntervalQualifier {
-    let told = core::mem::replace(&mut instance.clocks.told_interval, interval);
+    let told = core::mem::replace(&mut instance.state.clocks.told_interval, interval);
     if told == interval { FMI3_INTERVAL_UNCHANGED } else { FMI3_INTERVAL_CHANGED }
 }

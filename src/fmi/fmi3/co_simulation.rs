@@ -41,7 +41,7 @@ pub unsafe extern "C-unwind" fn fmi3DoStep(
             report(event_handling_needed, is_event);
             report(terminate_simulation, FMI3_FALSE);
             report(early_return, is_early);
-            report(last_successful_time, instance.communication.now());
+            report(last_successful_time, instance.state.communication.now());
         }
         outcome
     };

@@ -4,6 +4,7 @@ use super::candidate::{CANDIDATES, ObserverCandidate};
 use super::spread::SPREADS;
 use super::trial::{self, Outcome};
 use crate::study::ball::BallReference::{self, Sinusoids, Steps};
+use crate::study::interval::{Interval, bootstrap};
 use crate::study::loop_packages::LoopPackages;
 use crate::study::metrics;
 use crate::study::sweep::sweep;
@@ -72,4 +73,10 @@ impl Campaign {
 /// Median over all runs, lost ones counting as infinite.
 pub fn median(outcomes: &[Outcome], value: impl Fn(&Outcome) -> f64) -> f64 {
     metrics::median(outcomes.iter().map(value))
+}
+
+/// Where the [`median`] of all possible runs lies, by bootstrap.
+pub fn median_interval(outcomes: &[Outcome], value: impl Fn(&Outcome) -> f64) -> Interval {
+    let values: Vec<f64> = outcomes.iter().map(value).collect();
+    bootstrap(&values, |sample| metrics::median(sample))
 }

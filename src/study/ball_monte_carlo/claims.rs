@@ -1,12 +1,13 @@
 //! What is claimed of the estimators under spread parameters and noise, and what to choose.
 
-use super::campaign::{Campaign, REFERENCES, median};
+use super::campaign::{Campaign, REFERENCES, median, median_interval};
 use super::candidate::{ADAPTIVE_OFFSET, ADAPTIVE_RESISTANCE, DREM, FROZEN, NEWTON, ObserverCandidate};
 use super::spread::{Draw, SPREADS};
 use super::trial::Outcome;
 use super::tuning::{NOISES, Score, Tuning};
 use crate::study::Summary;
 use crate::study::claim::Claim;
+use crate::study::interval::{Interval, LEVEL};
 use crate::study::metrics::largest;
 use crate::study::report::quantity;
 use crate::study::sweep::indices;
@@ -114,14 +115,19 @@ pub fn tables(tuning: &Tuning, candidates: &[ObserverCandidate], campaign: &Camp
                 for reference in 0..REFERENCES.len() {
                     let outcomes = campaign.of(spread, reference, who);
                     row.push(format!("{} of {}", campaign.survivors(spread, reference, who), outcomes.len()));
-                    row.push(finite(1e3 * median(outcomes, Outcome::position), "mm"));
-                    row.push(finite(100.0 * median(outcomes, Outcome::flux), "%"));
+                    row.push(median_with_interval(outcomes, Outcome::position, 1e3, "mm"));
+                    row.push(median_with_interval(outcomes, Outcome::flux, 100.0, "%"));
                 }
                 row.push(cause(campaign, spread, who));
                 row
             });
             Summary::new(
-                format!("Spread {}: {}", widths.name, widths.text()),
+                format!(
+                    "Spread {}: {}; medians with {} % bootstrap intervals",
+                    widths.name,
+                    widths.text(),
+                    100.0 * LEVEL
+                ),
                 [
                     "estimator",
                     "T",
@@ -143,6 +149,21 @@ pub fn tables(tuning: &Tuning, candidates: &[ObserverCandidate], campaign: &Camp
 
 fn finite(value: f64, unit: &str) -> String {
     if value.is_finite() { quantity(value, unit) } else { "most are lost".to_owned() }
+}
+
+/// The median times `factor` in `unit` and the interval it lies in.
+fn median_with_interval(outcomes: &[Outcome], value: fn(&Outcome) -> f64, factor: f64, unit: &str) -> String {
+    let middle = factor * median(outcomes, value);
+    if !middle.is_finite() {
+        return finite(middle, unit);
+    }
+    let Interval { low, high } = median_interval(outcomes, value);
+    let [middle, low] = [(middle, unit), (factor * low, "1")].map(|(value, unit)| quantity(value, unit));
+    if high.is_finite() {
+        format!("{middle} ({low} to {})", quantity(factor * high, "1"))
+    } else {
+        format!("{middle} (from {low})")
+    }
 }
 
 /// When runs are lost and what is special about them.

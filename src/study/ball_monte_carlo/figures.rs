@@ -1,6 +1,6 @@
 //! Distributions of the errors, what was lost, and DREM's tuning.
 
-use super::campaign::{Campaign, REFERENCES, median};
+use super::campaign::{Campaign, REFERENCES, median, median_interval};
 use super::candidate::{ADAPTIVE_OFFSET, ADAPTIVE_RESISTANCE, NEWTON, ObserverCandidate};
 use super::spread::{Draw, SPREADS};
 use super::trial::Outcome;
@@ -47,7 +47,7 @@ fn distributions(
     caption: &str,
     candidates: &[ObserverCandidate],
     campaign: &Campaign,
-    (label, factor, value): (&str, f64, fn(&Outcome) -> f64),
+    (label, factor, value): (&str, f64, RunError),
 ) -> FigureWithData {
     let mut panels = Vec::new();
     for (reference, signal) in REFERENCES.iter().enumerate() {
@@ -80,6 +80,9 @@ fn capitalised(text: &str) -> String {
 
 /// What one run's draw says of one parameter.
 type Part = fn(&Draw) -> f64;
+
+/// One of a run's errors.
+type RunError = fn(&Outcome) -> f64;
 
 /// A row per run.
 fn data(candidates: &[ObserverCandidate], campaign: &Campaign) -> Table {
@@ -139,12 +142,15 @@ fn medians(candidates: &[ObserverCandidate], campaign: &Campaign) -> Table {
         add(format!("{name}: survivors [1]"), &|spread, reference| {
             campaign.survivors(spread, reference, who) as f64
         });
-        add(format!("{name}: median rms position error [m]"), &|spread, reference| {
-            median(campaign.of(spread, reference, who), Outcome::position)
-        });
-        add(format!("{name}: median rms flux error [1]"), &|spread, reference| {
-            median(campaign.of(spread, reference, who), Outcome::flux)
-        });
+        let errors: [(&str, &str, RunError); 2] =
+            [("position", "m", Outcome::position), ("flux", "1", Outcome::flux)];
+        for (what, unit, error) in errors {
+            let header = |part: &str| format!("{name}: {part}median rms {what} error [{unit}]");
+            add(header(""), &|spread, reference| median(campaign.of(spread, reference, who), error));
+            let interval = |spread, reference| median_interval(campaign.of(spread, reference, who), error);
+            add(header("low end of the "), &|spread, reference| interval(spread, reference).low);
+            add(header("high end of the "), &|spread, reference| interval(spread, reference).high);
+        }
     }
     table
 }
