@@ -49,9 +49,9 @@ fn controller(parameters: &[(&str, f64)]) -> Component<2> {
     Component::new(MaglevRigController::new(), ["sensor_voltage", "reference"], outputs, parameters)
 }
 
-fn plant() -> Component<2> {
+fn plant(parameters: &[(&str, f64)]) -> Component<2> {
     let outputs = ["sensor_voltage_measured", "voltage_measured", "position", "velocity"];
-    Component::new(MaglevRigPlant::new(), ["voltage", "force"], outputs, &[])
+    Component::new(MaglevRigPlant::new(), ["voltage", "force"], outputs, parameters)
 }
 
 /// One Runge-Kutta step per sample with the measurement a straight line, as a tuning loop makes it.
@@ -73,6 +73,7 @@ fn observe_exactly(inputs: &[[f64; 2]]) {
 
 fn main() {
     let Recording { controller: readings, plant: voltages } = record();
+    let nothing = vec![[0.0; 2]; STEPS];
     let nonlinear = |exponents| NonlinearInjection::new(gains_from_bandwidth(100.0), exponents, [0.01; 3]);
     let (kind, discretisation) = (("observer.kind", 2.0), "observer.discretisation");
     let through_extended_state =
@@ -102,7 +103,8 @@ fn main() {
             controller(&[("observer.kind", 4.0), ("observer.window", 12.0)]),
             &readings,
         ),
-        ("plant", plant(), &voltages),
+        ("plant", plant(&[]), &voltages),
+        ("plant at rest on its lower stop", plant(&[("initial.position", 25e-3)]), &nothing),
     ];
     let mut candidates: Vec<Candidate> = models
         .into_iter()
@@ -138,7 +140,8 @@ fn main() {
     verdict("linear, exact, PID", medians[0], "ns", Some(80.0), None);
     verdict("linear, exact, disturbance rejection", medians[1], "ns", Some(80.0), None);
     verdict("nonlinear, Runge-Kutta", medians[3], "ns", Some(300.0), None);
-    verdict("observer alone: linear, Runge-Kutta", medians[10], "ns", Some(50.0), None);
+    verdict("observer alone: linear, Runge-Kutta", medians[11], "ns", Some(50.0), None);
     verdict("kalman", medians[6], "ns", Some(150.0), None);
     verdict("windowed Newton, 12 samples", medians[7], "ns", Some(3000.0), None);
+    verdict("plant at rest, against the plant in flight", medians[9] / medians[8], "x", Some(0.5), None);
 }

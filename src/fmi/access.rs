@@ -68,6 +68,18 @@ impl Instance {
         Ok(())
     }
 
+    /// As [`Instance::get`] for a data type that no variable has: the first reference is refused.
+    #[cold]
+    pub(super) fn get_absent(&mut self, data_type: &DataType, references: &[u32]) -> Result<(), CallError> {
+        self.get(data_type, references, &mut [], |_| ())
+    }
+
+    /// As [`Instance::set`] for a data type that no variable has: the first reference is refused.
+    #[cold]
+    pub(super) fn set_absent(&mut self, data_type: &DataType, references: &[u32]) -> Result<(), CallError> {
+        references.iter().try_for_each(|reference| self.find(data_type, *reference).map(|_| ()))
+    }
+
     /// Gives checked values to tunable parameters and perhaps inputs; all or, when the parameters do not fit together,
     /// none.
     fn tune(&mut self, assignments: impl Iterator<Item = (u32, f64)>) -> Result<(), CallError> {

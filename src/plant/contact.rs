@@ -26,23 +26,31 @@ pub trait Guided<const N: usize, S: Scalar = f64> {
     /// Rate of the state in free flight; `rate[0]` is the velocity, `rate[1]` the acceleration \[m/s2\].
     fn rate(&self, state: &[S; N]) -> [S; N];
 
+    /// Rate of the state while the body rests at a stop: neither position nor velocity change. To be overridden where
+    /// nothing else needs the forces, which nobody feels.
+    #[inline]
+    fn rate_at_rest(&self, state: &[S; N]) -> [S; N] {
+        let mut rate = self.rate(state);
+        rate[0] = S::from(0.0);
+        rate[1] = S::from(0.0);
+        rate
+    }
+
     /// Smallest and largest position \[m\], in this order and different.
     fn stops(&self) -> (S, S);
 }
 
-/// Rate of the state: at a stop neither position nor velocity change.
+/// Rate of the state, in free flight or at a stop.
 #[inline]
 pub fn rate_in_contact<const N: usize, S: Scalar>(
     system: &impl Guided<N, S>,
     state: &[S; N],
     contact: Contact,
 ) -> [S; N] {
-    let mut rate = system.rate(state);
-    if contact != Contact::None {
-        rate[0] = S::from(0.0);
-        rate[1] = S::from(0.0);
+    match contact {
+        Contact::None => system.rate(state),
+        _ => system.rate_at_rest(state),
     }
-    rate
 }
 
 /// One number per stop, the smallest position first: positive while nothing happens there, negative once

@@ -110,6 +110,11 @@ impl<S: Scalar> Guided<2, S> for HeldBall<S> {
         [velocity, self.rig.acceleration(position.max(self.upper_stop), self.voltage, self.force)]
     }
 
+    #[inline]
+    fn rate_at_rest(&self, _: &[S; 2]) -> [S; 2] {
+        [S::from(0.0); 2]
+    }
+
     fn stops(&self) -> (S, S) {
         (self.upper_stop, self.lower_stop)
     }

@@ -61,6 +61,11 @@ impl Guided<3> for RampedBall {
         [position_rate, velocity_rate, 1.0]
     }
 
+    #[inline]
+    fn rate_at_rest(&self, _: &[f64; 3]) -> [f64; 3] {
+        [0.0, 0.0, 1.0]
+    }
+
     fn stops(&self) -> (f64, f64) {
         self.begin.stops()
     }
