@@ -242,7 +242,7 @@ def arguments() -> argparse.Namespace:
         default="controller-first",
         help="exchange order; parallel lets the observer use the measured voltage",
     )
-    parser.add_argument("--reference", choices=list(REFERENCES), default="sinusoids", help="where the ball shall go")
+    parser.add_argument("--reference", choices=list(REFERENCES), default="sinusoids", help="position reference")
     parser.add_argument(
         "--observer", default="drem", help="observer: drem, polynomial_newton or polynomial_newton_adaptive"
     )
@@ -251,7 +251,7 @@ def arguments() -> argparse.Namespace:
         type=number("1"),
         default=0.1,
         metavar="SHARE",
-        help="share of the flux the observer misses at first",
+        help="initial flux error of the observer, as a share of the equilibrium flux",
     )
     parser.add_argument("--initial-position", type=number("m"), default=0.0, metavar="M", help="y(0) in m")
     parser.add_argument(

@@ -176,10 +176,10 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--amplitude", type=number("V"), default=0.1, metavar="V", help="sine of the reference, in V")
     parser.add_argument("--frequency", type=number("Hz"), default=0.5, metavar="HZ", help="its frequency in Hz")
     parser.add_argument(
-        "--force", type=number("N"), default=0.0, metavar="N", help="force that pushes the ball down, in N"
+        "--force", type=number("N"), default=0.0, metavar="N", help="disturbing force, positive downwards, in N"
     )
     parser.add_argument(
-        "--force-time", type=number("s"), default=1.0, metavar="S", help="from when on it pushes, in s"
+        "--force-time", type=number("s"), default=1.0, metavar="S", help="time of the force step, in s"
     )
     parser.add_argument(
         "--noise", type=number("V"), default=0.0, metavar="V", help="standard deviation of the sensor in V"

@@ -3,8 +3,8 @@
 //! From the inside out; each knows only those above it:
 //!
 //! - [`scalar`]: numbers that equations are computed with: `f64`, dual numbers, numbers that trace dependencies.
-//! - [`plant`]: physics in continuous time, one file per rig. [`observer`]: estimators. [`controller`]: control laws.
-//!   [`signal`]: noise, resolution, filters, references.
+//! - [`plant`]: physics in continuous time, one file per rig. [`signal`]: noise, resolution, filters, references.
+//!   [`observer`]: estimators. [`controller`]: control laws.
 //! - [`model`]: what is exported: the tables of variables of plants and controllers, and how they are stepped.
 //! - [`fmi`]: the C boundary of both standards.
 //!

@@ -122,7 +122,7 @@ def read_with_pyssp(package: Path) -> str:
 
 
 def simulate_with_fmpy(package: Path) -> str:
-    """As anybody calls it: fmpy applies a parameter set only if it is handed one."""
+    """With default arguments: fmpy applies a parameter set only if it is passed one."""
     return _fmpy(package, None)
 
 

@@ -5,21 +5,31 @@ use super::{Panel, Stroke};
 /// Most points a line keeps; more cannot be seen in a panel.
 const RESOLUTION: usize = 1000;
 
+/// Largest magnitude that is drawn, and the inverse of the smallest on a logarithmic axis: what is beyond lies on the edge.
+/// Lengths of linear and ratios of logarithmic axes have to be numbers, too.
+const LARGEST: f64 = 1e150;
+
 /// The points of each series inside the x range that can be drawn, thinned to what a panel resolves.
 pub(super) fn visible(panel: &Panel) -> Vec<Vec<(f64, f64)>> {
     let (start, end) = panel.x_range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
     let is_drawable = |&(x, y): &(f64, f64)| {
         x >= start
             && x <= end
+            && x.is_finite()
             && y.is_finite()
             && (!panel.x_logarithmic || x > 0.0)
             && (!panel.logarithmic || y > 0.0)
     };
+    let limited = |value: f64, logarithmic: bool| {
+        value.clamp(if logarithmic { 1.0 / LARGEST } else { -LARGEST }, LARGEST)
+    };
+    let limited = |(x, y): (f64, f64)| (limited(x, panel.x_logarithmic), limited(y, panel.logarithmic));
     panel
         .series
         .iter()
         .map(|series| {
-            let points = thin(series.points.iter().copied().filter(is_drawable).collect(), RESOLUTION);
+            let drawable = series.points.iter().copied().filter(is_drawable).map(limited);
+            let points = thin(drawable.collect(), RESOLUTION);
             if series.stroke == Stroke::Held { staircase(&points) } else { points }
         })
         .collect()
@@ -61,7 +71,28 @@ pub(super) fn extent(values: impl Iterator<Item = f64>) -> (f64, f64) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::{Figure, svg};
     use super::*;
+
+    /// Guards: plotters counts decades without end where their ratio overflows, and cannot draw an axis to infinity.
+    #[test]
+    fn the_largest_and_the_smallest_numbers_are_drawn() {
+        let extremes = [(5e-324, -f64::MAX), (1.0, 1.0), (f64::MAX, f64::MAX), (f64::INFINITY, 2.0)];
+        for turned in [false, true] {
+            let points = extremes.map(|(x, y)| if turned { (y, x) } else { (x, y) });
+            let panel = Panel::new("", "", "").dots("", 0, points);
+            let panels = vec![
+                panel.clone(),
+                panel.clone().logarithmic(),
+                panel.clone().x_logarithmic(),
+                panel.logarithmic().x_logarithmic(),
+            ];
+            let figure = Figure { title: String::new(), caption: String::new(), columns: 2, panels };
+            let document = svg(&figure).unwrap();
+            // Three points on linear axes, the two that are positive where their axis is logarithmic.
+            assert_eq!(document.matches("<circle").count(), 3 + 2 + 3 + 2, "{turned}");
+        }
+    }
 
     #[test]
     fn thinning_keeps_the_extremes() {

@@ -44,7 +44,7 @@ pub fn report(WrittenFile { path, size }: &WrittenFile) -> Result<(), OutputErro
 /// Type of an option: a file beside which others are put, under its name with other endings. No file belongs beside a
 /// device.
 pub fn with_room_beside(path: PathBuf) -> Result<PathBuf, String> {
-    let expected = "expected a file, for others are put beside it";
+    let expected = "expected a regular file, since other files are written next to it";
     if fs::metadata(&path).is_ok_and(|known| !known.is_file()) {
         return Err(format!("a directory, device or pipe: {expected}"));
     }

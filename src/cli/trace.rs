@@ -10,7 +10,7 @@ use maglev_fmu::model::{ClosedLoop, ExchangeOrder, Model};
 
 use super::output::Lines;
 
-/// Run a system without FMI and print every bit, to compare an importer with
+/// Run a system without FMI and print all values bit-exact, as a reference for importers
 ///
 /// Controller first. A header, then a line per step: all real outputs of the plant before the step, then all real
 /// outputs of the controller after its tick, each as the 16 hexadecimal digits of its bits.

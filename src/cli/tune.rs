@@ -27,7 +27,7 @@ pub struct Tune {
     /// Observer to tune
     #[arg(long, value_enum, default_value_t = Observer::Linear)]
     observer: Observer,
-    /// What is to be small: (15) of the paper, or the velocity error over noises, masses and references
+    /// Objective to minimise: (15) of the paper, or the velocity error over noises, masses and references
     #[arg(long, value_enum, default_value_t = Goal::Paper)]
     objective: Goal,
     /// Standard deviation of the sensor in V, for noise-aware; may be repeated [default: 0.0001 0.0003 0.001 0.003]
@@ -173,14 +173,13 @@ impl Tune {
             &searches,
             Some(tuned.printed_cost),
         );
-        output::write_figure(directory, &figure)?;
-
         let written = file.write(&path)?;
+        output::write_figure(directory, &figure)?;
 
         if tuned.optimum.has_diverged {
             say(format_args!(
-                "The swarm has diverged: after {iterations} of {} iterations its positions are no numbers any more. What \
-                 follows is the best it found before.",
+                "The swarm has diverged: after {iterations} of {} iterations its positions are no longer finite. What \
+                 follows is the best result found before.",
                 settings.iterations
             ))?;
         }

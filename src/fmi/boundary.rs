@@ -110,7 +110,7 @@ unsafe fn deliver(handle: *mut Instance) {
         let logger = unsafe { &mut (*handle).logger };
         let (callback, name) = (logger.callback, logger.instance_name());
         let Some(message) = logger.outbox.take() else { return };
-        // SAFETY: the importer vouches for its callback and environment as long as the instance lives.
+        // SAFETY: both standards demand that the callback and its environment stay valid until the instance is freed.
         unsafe { callback.send(name, &message) };
     }
 }
@@ -118,7 +118,7 @@ unsafe fn deliver(handle: *mut Instance) {
 /// Makes the instance that is asked for and hands it to the importer; null and a message if there is none.
 ///
 /// # Safety
-/// The importer vouches for its callback.
+/// The callback in `request` may be called with its environment, as both standards demand of importers.
 #[allow(clippy::result_large_err, reason = "messages lie on the stack, for there may be no heap left")]
 pub(super) unsafe fn create(
     request: &Request<'_>,

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::CallError;
-use super::communication::ROUNDING;
+use super::time_rounding::ROUNDING;
 
 /// How far time may go back: not beyond the last event, nor beyond the completed step before the last one (FMI 2.0.5,
 /// section 3.2.2; FMI 3.0.2, section 3.2.1). Within that a solver may look at an earlier time again.

@@ -54,7 +54,7 @@ pub enum CallError {
     #[error("activationTime = {got} s: expected a finite time after {last} s")]
     ActivationTime { got: f64, last: f64 },
     #[error(
-        "{name} = {value} has no exact fraction of 64-bit numbers: expected a number of seconds such as 0.001"
+        "{name} = {value} s is no exact ratio of 64-bit integers: expected a number of seconds such as 0.001"
     )]
     NoFraction { name: &'static str, value: f64 },
     #[error(transparent)]
@@ -75,7 +75,7 @@ pub enum CallError {
     UnknownCategory(CategoryName),
     #[error("not offered by this model: {0}")]
     NotOffered(&'static str),
-    #[error("this function tells nothing about the fmi2StatusKind {0}")]
+    #[error("this function does not report the fmi2StatusKind {0}")]
     NoSuchStatus(i32),
 }
 

@@ -6,7 +6,7 @@
 //! restored before a function returns and before it calls back (FMI 2.0.5, section 2.1; FMI 3.0.2, section 2.2.1).
 //!
 //! The sticky flags are restored along with it: a host with an environment of its own, asking later which exceptions its
-//! computations raised, hears of no others ("clear the floating point status word before return", FMI 2.0.5). In the
+//! computations raised, finds no others ("clear the floating point status word before return", FMI 2.0.5). In the
 //! default environment flags stay raised, as they do after any function of a mathematical library.
 //!
 //! Reading the word costs some nanoseconds, as long as getting or setting a variable. Calls that only copy numbers therefore compute

@@ -35,7 +35,7 @@ pub struct Instance {
 impl Instance {
     /// An instance of any model, not only of those the library knows by token, in its plain edition.
     pub fn new(mut model: Box<dyn Model>, interface: Interface, logger: Logger) -> Result<Self, StateError> {
-        say_who_solves(&mut *model, interface);
+        set_solver(&mut *model, interface);
         let description = model.description();
         let mut instance = Self {
             start: SavedState::new(description),
@@ -128,7 +128,7 @@ impl Instance {
         let duration = self.state.communication.duration(point, step_size)?;
         self.model.advance(duration, &mut self.logger)?;
         self.state.needs_evaluation = false;
-        self.state.communication.move_to(point + step_size);
+        self.state.communication.take_step(point, step_size, duration);
         self.model.values_mut()[TIME] = self.state.communication.now();
         Ok(())
     }
@@ -156,7 +156,7 @@ impl Instance {
         self.state = state;
         self.step = None;
         // The state may be that of an instance with another interface.
-        let is_new = say_who_solves(&mut *self.model, self.interface);
+        let is_new = set_solver(&mut *self.model, self.interface);
         self.state.needs_initialisation |= is_new && self.state.phase.is_before_first_step();
     }
 
@@ -165,8 +165,8 @@ impl Instance {
     }
 }
 
-/// Tells the model who solves it; whether that is new to it.
-fn say_who_solves(model: &mut dyn Model, interface: Interface) -> bool {
+/// Sets the solver of the model; whether it has changed.
+fn set_solver(model: &mut dyn Model, interface: Interface) -> bool {
     let solver = match interface {
         Interface::ModelExchange => Solver::Importer,
         _ => Solver::Model,

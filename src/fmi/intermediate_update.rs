@@ -91,6 +91,7 @@ impl Instance {
         let model = sampled(&mut *self.model)?;
         // Refuses what `Model::advance` would refuse; the ticks are counted one by one below.
         model.require_acceptable_step(duration)?;
+        self.state.communication.begin_step(point, step_size, duration);
         let mut final_clock = *model.clock();
         final_clock.advance(duration);
         if model.clock().until_tick_within(duration) == Some(0.0) {
@@ -140,11 +141,16 @@ impl Instance {
         }
         match &step.final_clock {
             // To the last digit where `Model::advance` would have left it.
-            Some(final_clock) => *clock = *final_clock,
-            None => clock.pass(step.rest),
+            Some(final_clock) => {
+                *clock = *final_clock;
+                self.state.communication.move_to(step.end);
+            }
+            None => {
+                clock.pass(step.rest);
+                self.state.communication.move_to_time_of_clock(step.end);
+            }
         }
         let is_event = matches!(self.interface, Interface::CoSimulationWithEvents { .. }) && clock.is_due();
-        self.state.communication.move_to(step.end);
         self.model.values_mut()[TIME] = step.end;
         Ok(Progress::Done(StepEnd { is_event, is_early: step.final_clock.is_none() }))
     }

@@ -104,7 +104,7 @@ impl Outbox {
         self.next = 0;
         let (status, category) = self.last_lost.take()?;
         let lost = core::mem::take(&mut self.lost);
-        let text = format_args!("{lost} more messages: no room for them beside the {CAPACITY} bytes above");
+        let text = format_args!("{lost} more messages were dropped: the buffer of {CAPACITY} bytes is full");
         Some(Message::new(status, category, false, text))
     }
 }

@@ -32,6 +32,7 @@ mod state_format;
 mod state_handle;
 mod status;
 mod ticking;
+mod time_rounding;
 mod version;
 
 pub use communication::CommunicationPoint;

@@ -19,7 +19,7 @@ use thiserror::Error;
 
 pub(super) const MARK: [u8; 8] = *b"maglevFS";
 /// To be raised whenever a model's fields or [`super::instance_state::InstanceState`] change.
-pub(super) const VERSION: u32 = 5;
+pub(super) const VERSION: u32 = 6;
 
 pub(super) const TOKEN: core::ops::Range<usize> = 16..54;
 pub(super) const CHECKSUM: core::ops::Range<usize> = 54..58;
@@ -40,7 +40,7 @@ pub enum StateError {
     Mark { got: [u8; 8] },
     #[error("a state in version {got} of the format: expected {VERSION}")]
     Version { got: u32 },
-    #[error("{got} bytes: expected {expected} by what they say of themselves")]
+    #[error("{got} bytes: expected {expected} according to their header")]
     Payload { got: usize, expected: usize },
     #[error("a state of {got}: expected {expected}")]
     OtherModel { got: TokenName, expected: &'static str },

@@ -62,14 +62,18 @@ impl Instance {
                 model.require_within_longest_step(wait)?;
                 let clock = model.clock_mut();
                 clock.pass(wait);
-                // The importer's time may be off by rounding; a step never goes back nor beyond its end.
-                let reached = clock.next_time().max(point).min(point + step_size);
-                self.state.communication.move_to(if wait > 0.0 { reached } else { point });
+                if wait > 0.0 {
+                    // The importer's time may be off by rounding; a step never goes back nor beyond its end.
+                    let reached = clock.next_time().max(point).min(point + step_size);
+                    self.state.communication.move_to_time_of_clock(reached);
+                } else {
+                    self.state.communication.take_step(point, 0.0, 0.0);
+                }
                 is_early = self.state.communication.now() < point + step_size;
             }
             _ => {
                 self.model.advance(duration, &mut self.logger)?;
-                self.state.communication.move_to(point + step_size);
+                self.state.communication.take_step(point, step_size, duration);
             }
         }
         self.model.values_mut()[TIME] = self.state.communication.now();

@@ -4,7 +4,7 @@ use super::choice::choice;
 
 choice! {
     /// Which voltage an observer is told.
-    pub enum VoltageSource = "VoltageSource", "Which voltage the observer believes acted over the last sample" {
+    pub enum VoltageSource = "VoltageSource", "Voltage that the observer takes as applied over the last sample" {
         Command = "command", "The voltage this controller put out";
         Applied = "applied", "The input voltage_applied, right in every exchange order";
     }
@@ -12,7 +12,7 @@ choice! {
 
 choice! {
     /// What a law is fed with besides the measured position.
-    pub enum Feedback = "Feedback", "What the law is fed with besides the measured position" {
+    pub enum Feedback = "Feedback", "Source of the law's state feedback besides the measured position" {
         Estimate = "estimate", "The observer's estimate";
         State = "state", "The inputs state.*, for comparison";
     }

@@ -26,7 +26,7 @@ pub enum ModelError {
     )]
     Equal { first: &'static str, second: &'static str, value: f64, unit: &'static str },
     #[error(
-        "startTime = {start_time} s: expected {limit} s at most, either side of 0, to count ticks every {period} s",
+        "startTime = {start_time} s: expected -{limit} to {limit} s, so that ticks every {period} s can be counted",
         start_time = Readable(*start_time), limit = Readable(*limit)
     )]
     StartOutOfReach { start_time: f64, period: f64, limit: f64 },

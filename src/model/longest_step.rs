@@ -21,7 +21,7 @@ pub const NAME: &str = "longest_step";
 pub const fn longest_step() -> Variable {
     Variable::parameter(NAME, Kind::Real(&DURATION), 1e9).range(1e-6, 1e9).describe(
         "Longest communication step that is accepted, of effect in co-simulation; inputs and output are held over a \
-         step, which loses a loop if it is too long",
+         step; one that is too long makes the loop unstable",
     )
 }
 

@@ -21,7 +21,7 @@ pub enum PersistenceError {
     TooLong { model: &'static str, length: usize, excess: usize },
     #[error("not a valid {model} state: {value}")]
     Value { model: &'static str, value: ValueError },
-    #[error("not a valid {model} state: the internal state does not belong to the parameters")]
+    #[error("not a valid {model} state: the internal state is inconsistent with the parameters")]
     Inconsistent { model: &'static str },
 }
 

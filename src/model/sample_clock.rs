@@ -158,7 +158,7 @@ impl SampleClock {
     }
 
     /// Whether a clock with this `period` \[s\] can stand here; false for numbers that no clock ever has.
-    pub fn may_stand_where_it_does(&self, period: f64) -> bool {
+    pub fn is_valid_for(&self, period: f64) -> bool {
         let due = self.first_tick_not_before_now();
         // So far away that rounding is more than a period, ticks may have been counted that the quotient does not show.
         let periods = (self.elapsed.0 + self.elapsed.1) / self.period;
@@ -207,7 +207,7 @@ mod tests {
                 // Rounding is half a period there, so that the second one may be yet to come.
                 let ticks = clock.advance(1.5 * period);
                 assert!((1..=2).contains(&(ticks.end - ticks.start)), "{period} {start_time} {ticks:?}");
-                assert!(clock.may_stand_where_it_does(period));
+                assert!(clock.is_valid_for(period));
             }
             for start_time in [limit.next_up(), -limit.next_up(), 1e300, -1e300] {
                 let refused = SampleClock::starting(period, start_time);
@@ -223,7 +223,7 @@ mod tests {
             clock.stand_at(time);
             for _ in 0..1000 {
                 clock.advance_through(0.0);
-                assert!(clock.may_stand_where_it_does(1e-3), "{time}");
+                assert!(clock.is_valid_for(1e-3), "{time}");
             }
         }
     }
@@ -282,7 +282,7 @@ mod tests {
         assert_eq!(clock.take_at(1e-3 + 1e-12), 1e-3);
         assert_eq!(clock.take_at(0.0015), 0.0015);
         assert_eq!(clock.take_at(0.0019999999999), 0.002);
-        assert!(clock.may_stand_where_it_does(1e-3));
+        assert!(clock.is_valid_for(1e-3));
     }
 
     #[test]
@@ -298,7 +298,7 @@ mod tests {
         assert_eq!(clock.advance_up_to(0.001), 6..6);
         assert_eq!(clock.advance_up_to(0.005_999_999_99), 6..7);
         assert_eq!(clock.advance_up_to(0.0105), 7..11);
-        assert!(clock.may_stand_where_it_does(1e-3));
+        assert!(clock.is_valid_for(1e-3));
         assert_eq!(clock.advance_up_to(f64::MAX).end, i64::MAX);
     }
 

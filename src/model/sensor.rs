@@ -84,7 +84,7 @@ macro_rules! sensor_variables {
             ($error, $largest_error),
             [
                 concat!("Standard deviation of ", $sensor, "'s white noise, per reading"),
-                concat!("Step of ", $sensor, "'s output, 0 for none"),
+                concat!("Quantisation step of ", $sensor, "'s output, 0 for none"),
                 concat!("Seed of ", $noise, " noise; the same seed gives the same run on every platform"),
             ],
         )
@@ -229,7 +229,7 @@ impl Sensor {
     /// Whether it can have been started with this sample time \[s\].
     pub(super) fn belongs_to(&self, sample_time: f64) -> bool {
         match self.clock {
-            Some(clock) => clock.may_stand_where_it_does(sample_time),
+            Some(clock) => clock.is_valid_for(sample_time),
             None => sample_time < SHORTEST_SAMPLE_TIME,
         }
     }

@@ -16,8 +16,8 @@ pub const NAME: &str = "start_delay";
 /// Row of the tables of all controllers.
 pub const fn start_delay() -> Variable {
     Variable::parameter(NAME, Kind::Real(&DURATION), 0.0).range(0.0, 10.0).describe(
-        "Time from the start during which ticks do nothing; one communication step where a master passes zeros \
-         before the first",
+        "Time from the start during which ticks do nothing; set it to one communication step if the master passes \
+         zeros before the first exchange",
     )
 }
 

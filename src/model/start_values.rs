@@ -47,7 +47,7 @@ pub enum StartValueError {
 /// Why a token was refused; says so without the heap, which may be what is missing.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum TokenError<'a> {
-    #[error("the token \"{}\" is none of this library: {KnownTokens}", .0.escape_debug())]
+    #[error("the token \"{}\" is not one of this library: {KnownTokens}", .0.escape_debug())]
     Unknown(&'a str),
     #[error("the token ends with \"{}\": expected ;value reference=value", .0.escape_debug())]
     Malformed(&'a str),

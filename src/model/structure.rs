@@ -3,19 +3,7 @@
 use super::sampled_controller::{ObserverAndLaw, SampledController};
 use super::variable::Variable;
 use super::{Description, Registration};
-
-/// How a known enters the equation of an unknown.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum DependencyKind {
-    /// Times a number that never changes.
-    Constant,
-    /// Times a number that follows from fixed parameters.
-    Fixed,
-    /// Times a number that changes at events and with parameters only.
-    Discrete,
-    /// In no particular way.
-    Dependent,
-}
+pub use crate::scalar::DependencyKind;
 
 /// What one variable follows from; by value reference, in ascending order.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -164,7 +164,7 @@ impl BallObserver {
     }
 
     /// Goes on with other settings; the state of the filters stays.
-    pub fn adopt(&mut self, settings: BallObserverSettings) {
+    pub fn apply_settings(&mut self, settings: BallObserverSettings) {
         if settings != self.settings {
             self.settings = settings;
             self.constants = Constants::new(&settings);

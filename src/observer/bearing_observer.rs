@@ -54,7 +54,7 @@ impl BearingObserver {
     }
 
     /// Goes on with other settings of the same observer; settings of another one change nothing.
-    pub fn adopt(&mut self, settings: BearingObserverSettings) {
+    pub fn apply_settings(&mut self, settings: BearingObserverSettings) {
         match (self, settings) {
             (Self::Newton(own, _), BearingObserverSettings::Newton(new)) => *own = new,
             (Self::WindowedNewton(own, _), BearingObserverSettings::WindowedNewton(new)) => *own = new,

@@ -34,7 +34,7 @@
 //! ```
 //!
 //! The default 1e-6 Wb thus gives up a factor of 3 with a perfect model for one of 5 with a drive off by 1 mV, and the
-//! filter stays awake: with 0 the covariance goes to zero and the filter in the end listens to its model alone. A wrong
+//! gain stays above zero: with 0 the covariance goes to zero and in the end measurements have no effect. A wrong
 //! eps (0.001 for 0: 4.9e-4 Wb) is a bias no flux_noise removes. `converged` is then false in most samples where the
 //! filter trusts its model too much (84 % in the second row for 0 and 1e-7, none from 1e-6 on).
 
@@ -120,18 +120,16 @@ impl KalmanObserver {
     /// the last estimate stands and the filter starts over.
     #[inline(never)]
     pub fn update(&mut self, settings: &KalmanSettings, position: f64, applied_voltage: f64) -> Estimate {
-        let mut filter = self.filter;
         if self.beginning.len() > 0 {
-            filter.predict_bearing(settings, applied_voltage);
+            self.filter.predict_bearing(settings, applied_voltage);
         }
-        let innovation = filter.correct_position(settings, position);
+        let innovation = self.filter.correct_position(settings, position);
         let residual = innovation.value.abs().min(f64::MAX);
-        if !filter.is_valid() {
+        if !self.filter.is_valid() {
             self.filter = KalmanFilter::expecting(self.initial);
             self.beginning = SampleWindow::EMPTY;
             return Estimate { state: self.estimate, residual, iterations: 1, converged: false };
         }
-        self.filter = filter;
         if self.beginning.len() < BEGINNING {
             self.beginning.push(position, applied_voltage);
             let samples = self.beginning.len();

@@ -82,10 +82,10 @@ impl<'a> Window<'a> {
         line
     }
 
-    /// Y - y_0 - Q(x3) and Q'(x3), each in the first N places.
-    fn without_force(&self, settings: &NewtonSettings, flux: f64) -> [[f64; MAX_WINDOW]; 2] {
+    /// Writes Y - y_0 - Q(x3) to `rest` and Q'(x3) to `sensitivity`, both of N places of which the first stays 0.
+    #[inline]
+    fn remove_force(&self, settings: &NewtonSettings, flux: f64, rest: &mut [f64], sensitivity: &mut [f64]) {
         let NewtonSettings { bearing, map, sample_time: t, .. } = *settings;
-        let (mut rest, mut sensitivity) = ([0.0; MAX_WINDOW], [0.0; MAX_WINDOW]);
         let (mut flux, mut position, mut velocity) = (flux, 0.0, 0.0);
         let (mut position_slope, mut velocity_slope) = (0.0, 0.0);
         let oldest = self.positions[0];
@@ -100,7 +100,6 @@ impl<'a> Window<'a> {
             *target.0 = (measured - oldest) - position;
             *target.1 = position_slope;
         }
-        [rest, sensitivity]
     }
 
     /// Iterates (6) from `guess`; stops early once a further iteration could not change the flux any more. An
@@ -111,9 +110,11 @@ impl<'a> Window<'a> {
         let resolution = f64::EPSILON * largest_magnitude([self.positions[0], self.positions[count - 1]]);
         let mut state = guess;
         let mut converged = false;
+        let mut places = [[0.0; MAX_WINDOW]; 2];
+        let [rest, sensitivity] = places.each_mut().map(|places| &mut places[..count]);
         for iteration in 1..=settings.max_iterations {
-            let [mut rest, mut sensitivity] = self.without_force(settings, state.flux);
-            let (rest, sensitivity) = (&mut rest[..count], &mut sensitivity[..count]);
+            (rest[0], sensitivity[0]) = (0.0, 0.0);
+            self.remove_force(settings, state.flux, rest, sensitivity);
             let rest_line = self.remove_line(rest);
             let sensitivity_line = self.remove_line(sensitivity);
             let (mut product, mut square) = (0.0, 0.0);
@@ -148,9 +149,11 @@ impl<'a> Window<'a> {
 
     /// |Y - H(w)|^2 \[m2\]
     fn squared_residual(&self, settings: &NewtonSettings, w: State) -> f64 {
-        let [rest, _] = self.without_force(settings, w.flux);
+        let mut places = [[0.0; MAX_WINDOW]; 2];
+        let [rest, sensitivity] = places.each_mut().map(|places| &mut places[..self.positions.len()]);
+        self.remove_force(settings, w.flux, rest, sensitivity);
         let (mut sum, mut line) = (0.0, w.position - self.positions[0]);
-        for value in &rest[..self.positions.len()] {
+        for value in rest.iter() {
             sum += (value - line) * (value - line);
             line += settings.sample_time * w.velocity;
         }

@@ -73,7 +73,7 @@ pub struct ReducedNewtonObserver {
     flux: f64,
     /// v\[k-1\] \[m/s\] when the sample k arrives.
     filtered_velocity: f64,
-    /// a l\[k-2\] \[m/s\] when the sample k arrives: what l\[k-1\] owes to the past.
+    /// a l\[k-2\] \[m/s\] when the sample k arrives: the part of l\[k-1\] that follows from earlier samples.
     carried_lag: f64,
     /// y\[k-1\] \[m\] when the sample k arrives.
     position: f64,

@@ -117,12 +117,12 @@ impl RigObserver {
     }
 
     /// Goes on with other settings of the same observer; those of another estimator change nothing in it.
-    pub fn adopt(&mut self, settings: RigObserverSettings) {
+    pub fn apply_settings(&mut self, settings: RigObserverSettings) {
         self.measurement = settings.measurement;
         self.input_gain = settings.input_gain;
         match (&mut self.estimator, settings.estimator) {
             (Estimator::ExtendedState(observer), RigEstimatorSettings::ExtendedState(new)) => {
-                observer.adopt(new)
+                observer.apply_settings(new)
             }
             (Estimator::Kalman(own, _), RigEstimatorSettings::Kalman(new)) => *own = new,
             (Estimator::WindowedNewton(model, own, _), RigEstimatorSettings::WindowedNewton(other, new)) => {

@@ -96,7 +96,7 @@ impl ExtendedStateObserver {
     }
 
     /// Goes on with other settings.
-    pub fn adopt(&mut self, settings: ExtendedStateSettings) {
+    pub fn apply_settings(&mut self, settings: ExtendedStateSettings) {
         if self.settings != settings {
             self.settings = settings;
             self.step = prepare(&settings);

@@ -6,10 +6,10 @@ use super::documentation::documentation;
 use super::icon::{icon_png, icon_svg};
 use super::loop_diagram::{diagram_name, loop_diagram};
 use super::model_description::{model_description, terminals_and_icons};
-use super::plug::Plug;
 use super::reference_run::ReferenceRun;
 use super::related_files::related_files;
 use super::run_figure::{RUN_FIGURE, run_figure};
+use super::terminal::Terminal;
 use super::{FmiVersion, Form, GenerationTime, Library, PackageError, licenses};
 use crate::model::{Description, StartValues};
 
@@ -56,9 +56,9 @@ pub fn contents<'a>(
     }
     let mut entries: Vec<Entry<'a>> =
         files.into_iter().map(|(path, bytes)| Entry::document(path.to_owned(), bytes)).collect();
-    for plug in Plug::all_of(description) {
-        let path = format!("documentation/{}", diagram_name(plug.system.name));
-        entries.push(Entry::document(path, owned(loop_diagram(plug.system, Some(description)))));
+    for terminal in Terminal::all_of(description) {
+        let path = format!("documentation/{}", diagram_name(terminal.system.name));
+        entries.push(Entry::document(path, owned(loop_diagram(terminal.system, Some(description)))));
     }
     let run = ReferenceRun::of(description, start_values)
         .map_err(|source| PackageError::ReferenceRun { model: name, source })?;

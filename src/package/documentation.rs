@@ -6,9 +6,9 @@ use quick_xml::escape::escape;
 
 use super::loop_diagram::diagram_name;
 use super::model_description::enumerations;
-use super::plug::Plug;
 use super::related_files::{DIRECTORY, INPUT, OUTPUT};
 use super::run_figure::RUN_FIGURE;
+use super::terminal::Terminal;
 use super::{Form, GenerationTime, licenses, variable_text};
 use crate::model::{Description, Edition, StartValues};
 
@@ -81,8 +81,8 @@ the first row before or after the end of the initialization.</p>
 /// The loops that the model is part of, with their wires.
 fn loops(description: &Description) -> String {
     let mut text = String::new();
-    for plug in Plug::all_of(description) {
-        let system = plug.system;
+    for terminal in Terminal::all_of(description) {
+        let system = terminal.system;
         let (plant, controller) = (system.plant.description.name, system.controller.description.name);
         let rows = lines(system.wires().map(|wire| {
             row([wire.source.name.into(), code(wire.output), wire.target.name.into(), code(wire.input)])

@@ -227,16 +227,13 @@ mod tests {
         }
     }
 
-    /// Pressed on a stop by a force that is counted whenever it is asked for; a third state may flow on.
-    struct Pressed<'a> {
-        flow: f64,
-        asked: &'a core::cell::Cell<u64>,
-    }
+    /// Pressed on a stop by a force that counts how often it is asked for; the third state flows on at a rate.
+    struct Pressed<'a>(f64, &'a core::cell::Cell<u64>);
 
     impl Guided<3> for Pressed<'_> {
         fn rate(&self, state: &[f64; 3]) -> [f64; 3] {
-            self.asked.set(self.asked.get() + 1);
-            [state[1], 2.0 - state[2], self.flow]
+            self.1.set(self.1.get() + 1);
+            [state[1], 2.0 - state[2], self.0]
         }
 
         fn stops(&self) -> (f64, f64) {
@@ -244,7 +241,7 @@ mod tests {
         }
 
         fn rate_at_rest(&self, _: &[f64; 3]) -> [f64; 3] {
-            [0.0, 0.0, self.flow]
+            [0.0, 0.0, self.0]
         }
     }
 
@@ -252,7 +249,7 @@ mod tests {
     fn rest_ends_in_the_same_state_however_it_is_cut_and_costs_no_forces() {
         for (flow, once_more) in [(0.0, 0), (1e-3, 999), (3.0, 999)] {
             let asked = core::cell::Cell::new(0);
-            let system = Pressed { flow, asked: &asked };
+            let system = Pressed(flow, &asked);
             let start = ([2.0, 0.0, 0.0], Contact::AtLargestPosition);
             let (mut whole, mut contact) = start;
             advance(&system, &mut whole, &mut contact, 1.0, 1e-3);

@@ -1,6 +1,6 @@
 //! Explicit Runge-Kutta step of order 5.
 //!
-//! The fifth-order formula of the pair by Dormand and Prince, "A family of embedded Runge-Kutta formulae", LogSink
+//! The fifth-order formula of the pair by Dormand and Prince, "A family of embedded Runge-Kutta formulae", Journal
 //! of Computational and Applied Mathematics 6(1), 1980, table 2 (RK5(4)7M). Without its error estimate six stages
 //! are enough: the seventh only serves the fourth-order formula.
 

@@ -12,4 +12,4 @@ mod traced;
 pub use dual::Dual;
 pub use real::Scalar;
 #[cfg(feature = "tools")]
-pub use traced::{Traced, Variation};
+pub use traced::{DependencyKind, MOST_VARIABLES, Traced, Variation};

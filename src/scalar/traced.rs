@@ -1,9 +1,23 @@
 //! What a result depends on, and how: numbers that remember the variables they were computed from.
 
 use super::Scalar;
-use crate::model::LARGEST_TABLE;
-use crate::model::structure::DependencyKind;
 use core::ops::{Add, Div, Mul, Neg, Sub};
+
+/// Variables that a traced number can remember.
+pub const MOST_VARIABLES: usize = 128;
+
+/// How a variable enters the equation of another one: the kinds of dependencies of both standards.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum DependencyKind {
+    /// Times a number that never changes.
+    Constant,
+    /// Times a number that follows from fixed parameters.
+    Fixed,
+    /// Times a number that changes at events and with parameters only.
+    Discrete,
+    /// In no particular way.
+    Dependent,
+}
 
 /// When a number can change, from never to always.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -34,7 +48,7 @@ pub struct Traced {
     value: f64,
     variation: Variation,
     /// Per row of the table: how that variable enters and the derivative by it.
-    entries: [Option<(DependencyKind, f64)>; LARGEST_TABLE],
+    entries: [Option<(DependencyKind, f64)>; MOST_VARIABLES],
 }
 
 impl Traced {
@@ -93,7 +107,7 @@ impl Traced {
 
 impl From<f64> for Traced {
     fn from(value: f64) -> Self {
-        Self { value, variation: Variation::Never, entries: [None; LARGEST_TABLE] }
+        Self { value, variation: Variation::Never, entries: [None; MOST_VARIABLES] }
     }
 }
 

@@ -36,7 +36,7 @@ pub fn median(values: impl IntoIterator<Item: Borrow<f64>>) -> f64 {
     }
 }
 
-/// Time \[s\] from which on a signal stays within `limit` for good; infinite if it does not.
+/// Time \[s\] from which on a signal stays within `limit` to its end; infinite if it does not.
 pub fn settling_time(time: &[f64], values: &[f64], limit: f64) -> f64 {
     match values.iter().rposition(|value| value.is_nan() || value.abs() > limit) {
         None => 0.0,

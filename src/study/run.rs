@@ -25,7 +25,7 @@ impl Run {
         self
     }
 
-    /// Every so manieth row.
+    /// Every `stride`th row.
     pub fn every(&self, stride: usize) -> Self {
         let thin = |column: &[f64]| column.iter().step_by(stride).copied().collect();
         let columns = self.columns.iter().map(|(name, column)| (name.clone(), thin(column)));

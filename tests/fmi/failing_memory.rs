@@ -42,7 +42,7 @@ unsafe extern "C-unwind" fn logger2(
     _: *const c_char,
     text: *const c_char,
 ) {
-    // SAFETY: the library vouches for the string.
+    // SAFETY: the library passes a C string that lives during the call.
     unsafe { keep(status, text) };
 }
 

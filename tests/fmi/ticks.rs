@@ -1,5 +1,6 @@
 //! The controller's ticks are those of its own clock, however the importer cuts time into steps.
 
+use super::harness::clocked::{Choices, sampled_models};
 use super::harness::{BOTH, CONTROLLER, Component, OK, Standard};
 
 /// End of the long runs \[s\].
@@ -159,6 +160,67 @@ fn a_million_accumulated_steps_lose_no_tick() {
             assert_eq!(component.get_reals(&tick_time, &mut value), OK);
             assert!(value[0] == f64::from(k) * 1e-4, "step {k}: {} ", value[0]);
             t += 1e-4;
+        }
+    }
+}
+
+/// Steps whose size misses the way between the communication points by some units in the last place of the time: the gaps
+/// are rounding one by one, and not when they add up.
+const IMPRECISE_STEPS: [(f64, f64); 3] = [
+    (20_000.0, 0.001f32 as f64),
+    (20_000.0, 1e-3 * (1.0 - 4.7e-8)),
+    // Where it is some microseconds.
+    (1.7e9, 1.002e-3),
+];
+
+const PERIOD: f64 = 1e-3;
+
+/// Guards: at 20 000 s every tick ran a step early from the 2105th on, at 1.7e9 s the clock was 39 ms ahead after 20 s.
+#[test]
+fn the_clock_stays_at_the_communication_points_of_imprecise_steps() {
+    for (standard, model) in
+        BOTH.into_iter().flat_map(|standard| sampled_models().map(move |m| (standard, m)))
+    {
+        for (start, step_size) in IMPRECISE_STEPS {
+            let component = Component::with_logging(standard, model, false);
+            assert_eq!(component.set("sample_time", PERIOD), OK);
+            component.initialise(start);
+            for k in 0..6000 {
+                let time = start + f64::from(k) * PERIOD;
+                assert_eq!(component.step(time, step_size), OK, "{model} {start} {step_size} {k}");
+                // As many units in the last place as are ignored, and those of the step itself.
+                let bound = (1e-4 * PERIOD).max(40.0 * f64::EPSILON * start);
+                let ahead = component.get("tick_time") - time;
+                let is_at_the_tick = ahead.abs() <= bound || (start > 1e9 && (ahead - PERIOD).abs() <= bound);
+                assert!(is_at_the_tick, "{model} {start} {step_size} {k}: {ahead}");
+            }
+        }
+    }
+}
+
+/// Guards: the tick of the 2128th communication point was refused, for the clock had fallen behind.
+#[test]
+fn ticks_of_imprecise_steps_may_be_activated() {
+    let (start, step_size) = IMPRECISE_STEPS[1];
+    for (model, early_return) in sampled_models().flat_map(|model| [(model, false), (model, true)]) {
+        let choices = Choices { event_mode: true, early_return, intermediate_update: None };
+        let component = Component::co_simulation(model, choices);
+        assert_eq!(component.set("sample_time", PERIOD), OK);
+        component.initialise(start);
+        for k in 0..6000 {
+            let time = start + f64::from(k) * PERIOD;
+            assert_eq!(
+                component.set_clock(component.clocks()[0], 1),
+                OK,
+                "{:?}",
+                component.recorder.messages().last()
+            );
+            component.settle_event();
+            let miss = component.get("tick_time") - time;
+            assert!(miss.abs() <= 1e-4 * PERIOD, "{model} {k}: {miss}");
+            assert_eq!(component.enter_step_mode(), OK);
+            assert_eq!(component.step_to_event(time, step_size).status, OK);
+            assert_eq!(component.enter_event_mode(), OK);
         }
     }
 }

@@ -67,7 +67,7 @@ pub unsafe extern "C-unwind" fn fmi3GetIntervalDecimal(
             require_clocks(instance, references)?;
             for (index, reference) in references.iter().enumerate() {
                 intervals[index] = instance.timing(*reference)?.interval;
-                qualifiers[index] = tell(instance, intervals[index]);
+                qualifiers[index] = interval_qualifier(instance, intervals[index]);
             }
             Ok(())
         })
@@ -100,7 +100,7 @@ pub unsafe extern "C-unwind" fn fmi3GetIntervalFraction(
                 let interval = instance.timing(*reference)?.interval;
                 (counters[index], resolutions[index]) =
                     fraction(interval).ok_or(CallError::NoFraction { name: "interval", value: interval })?;
-                qualifiers[index] = tell(instance, interval);
+                qualifiers[index] = interval_qualifier(instance, interval);
             }
             Ok(())
         })
@@ -215,8 +215,8 @@ fn require_clocks(instance: &mut Instance, references: &[u32]) -> Result<(), Cal
     references.iter().try_for_each(|reference| instance.timing(*reference).map(drop))
 }
 
-/// The importer is told the interval \[s\] of `tick`: whether it is news (FMI 3.0.2, section 2.2.8.4).
-fn tell(instance: &mut Instance, interval: f64) -> fmi3IntervalQualifier {
+/// Whether the interval \[s\] of `tick` has changed since it was last reported (FMI 3.0.2, section 2.2.8.4).
+fn interval_qualifier(instance: &mut Instance, interval: f64) -> fmi3IntervalQualifier {
     let told = core::mem::replace(&mut instance.state.clocks.told_interval, interval);
     if told == interval { FMI3_INTERVAL_UNCHANGED } else { FMI3_INTERVAL_CHANGED }
 }

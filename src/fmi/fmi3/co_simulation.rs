@@ -55,8 +55,8 @@ pub unsafe extern "C-unwind" fn fmi3DoStep(
     };
     while let Some((update, time)) = waiting.take() {
         let (mut is_requested, mut return_time) = (FMI3_FALSE, time);
-        // SAFETY: the importer vouches for its callback; both results have room. No reference to the instance is
-        // alive, since the importer uses the instance within.
+        // SAFETY: the callback is valid until the instance is freed, as the standard demands; both results have room.
+        // No reference to the instance is alive, since the importer uses the instance within.
         unsafe {
             (update.callback)(
                 update.environment,

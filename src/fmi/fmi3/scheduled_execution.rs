@@ -34,8 +34,8 @@ pub unsafe extern "C-unwind" fn fmi3ActivateModelPartition(
     if status != Status::Ok as i32 {
         return status;
     }
-    // SAFETY: the importer vouches for its callback. No reference to the instance is alive, since the importer uses
-    // the instance within.
+    // SAFETY: the callback is valid until the instance is freed, as the standard demands. No reference to the
+    // instance is alive, since the importer uses the instance within.
     unsafe { callback(environment) };
     // SAFETY: the handle is live and used by one thread at a time; the importer's callback calls nothing but what
     // clock update mode allows, as the standard demands of importers.

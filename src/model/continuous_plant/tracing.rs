@@ -4,10 +4,12 @@ use std::collections::BTreeMap;
 
 use super::evaluation::{follow, initialise};
 use super::{ContinuousPlant, PlantEquations};
-use crate::model::Solver;
 use crate::model::structure::{Dependencies, DependencyKind, Structured};
 use crate::model::variable::{Causality, Kind, Variability, Variable};
-use crate::scalar::{Traced, Variation};
+use crate::model::{LARGEST_TABLE, Solver};
+use crate::scalar::{MOST_VARIABLES, Traced, Variation};
+
+const _: () = assert!(LARGEST_TABLE <= MOST_VARIABLES);
 
 /// Who solves the plant, and whether its sensor is read: all that an instance may be.
 const CONFIGURATIONS: [(Solver, bool); 3] =

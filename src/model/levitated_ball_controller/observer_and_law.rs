@@ -58,7 +58,7 @@ impl ObserverAndLaw<COUNT> for BallObserverAndLaw {
     }
 
     fn apply_tunable_parameters(&mut self, values: &[f64; COUNT]) {
-        self.observer.adopt(observer_settings(values));
+        self.observer.apply_settings(observer_settings(values));
         self.law = law(values);
     }
 
@@ -113,7 +113,7 @@ fn log_restart(current: f64, sample: Sample, sink: &mut dyn LogSink) {
     sink.log(
         Topic::Observer,
         format_args!(
-            "t = {time} s: the observer ran away and starts again, at a current of {current:e} A and a voltage of \
+            "t = {time} s: the observer diverged and is reset, at a current of {current:e} A and a voltage of \
              {acting_voltage:e} V"
         ),
     );

@@ -32,8 +32,11 @@ choice! {
 static OBSERVER_KIND: Enumeration = ObserverKind::ENUMERATION;
 static ADAPTATION_KIND: Enumeration = AdaptationKind::ENUMERATION;
 static VOLTAGE_SOURCE: Enumeration = Enumeration { name: "BallVoltageSource", ..VoltageSource::ENUMERATION };
-static FEEDBACK: Enumeration =
-    Enumeration { name: "BallFeedback", description: "What the law is fed with", ..Feedback::ENUMERATION };
+static FEEDBACK: Enumeration = Enumeration {
+    name: "BallFeedback",
+    description: "Source of the law's state feedback",
+    ..Feedback::ENUMERATION
+};
 
 const fn prefilter(name: &'static str, start: f64) -> Variable {
     Variable::parameter(name, Kind::Real(&RATE), start)
@@ -53,7 +56,7 @@ variable_table! {
         .describe("i, measured coil current");
     REFERENCE = Variable::input("reference", &POSITION)
         .range(-10.0, 10.0)
-        .describe("r, wanted position before the filter, taken for a straight line between ticks");
+        .describe("r, reference position before the filter, interpolated linearly between ticks");
     VOLTAGE_APPLIED = Variable::input("voltage_applied", &VOLTAGE)
         .describe("Voltage that acted on the plant over the last sample, used with observer.voltage_source = \
             applied");
@@ -89,7 +92,7 @@ variable_table! {
         .initially_from(&[
             "mass", "gravity", "inductance_constant", "observer.initial.flux", "observer.initial.flux_offset",
         ])
-        .describe("What the normalised regression of degree 5 leaves at the estimated offset; 0 for the true one");
+        .describe("Residual of the normalised regression of degree 5 at the estimated offset; 0 at the true offset");
     ESTIMATED_RESISTANCE = Variable::held_output("observer.estimated_resistance", Kind::Real(&RESISTANCE_QUANTITY))
         .initially_from(&["resistance"])
         .describe("R as learnt by polynomial_newton_adaptive, else as given");
@@ -113,7 +116,7 @@ variable_table! {
         .describe("gamma of drem; 0 freezes the offset");
     EXCITATION_SCALE = Variable::tunable("observer.excitation_scale", Kind::Real(&RATIO), 1e9)
         .range(0.0, 1e15)
-        .describe("kappa of drem, a mere unit of its determinant; 1e9 suits the sinusoids, 1e10 the steps");
+        .describe("kappa of drem, scale factor of its determinant; 1e9 suits the sinusoids, 1e10 the steps");
     NORMALISATION = Variable::tunable("observer.normalisation", Kind::Real(&RATIO), 0.0)
         .range(0.0, 1e15)
         .describe("mu: if not 0, the gain of drem is divided by mu^2 + Delta^2; not in the paper");
@@ -140,13 +143,13 @@ variable_table! {
         .describe("Rate at which the error of the position decays, g_y lam0^2 of Proposition 8");
     STARTUP_HOLD = Variable::parameter("observer.startup_hold", Kind::Real(&DURATION), 0.1)
         .range(0.0, 1e3)
-        .describe("Time the offset stays frozen until the prefilters have forgotten the start");
+        .describe("Time during which the offset is frozen, so that the initial transient of the prefilters can decay");
     FILTERS_FROM_ZERO = Variable::parameter("observer.filters_from_zero", Kind::Boolean, 0.0)
         .describe("For studies: all filters start from zero instead of from a ball at rest, which makes the start wrong");
     INITIAL_FLUX = Variable::parameter("observer.initial.flux", Kind::Real(&FLUX), LABORATORY_FLUX)
         .range(-10.0, 10.0)
         .describe("chi(0), where the integral of the induced voltage starts; the start value is the flux that \
-            carries the ball of the other start values");
+            balances the weight with the other start values");
     INITIAL_OFFSET = Variable::parameter("observer.initial.flux_offset", Kind::Real(&FLUX), 0.0)
         .range(-10.0, 10.0)
         .describe("theta^(0)");
@@ -160,7 +163,7 @@ variable_table! {
         .describe("Estimate of y at the start, unless it comes from the current");
     OBSERVER_VOLTAGE_SOURCE =
         Variable::parameter("observer.voltage_source", Kind::Enumeration(&VOLTAGE_SOURCE), VoltageSource::Command.number())
-        .describe("Which voltage the observer believes acted over the last sample");
+        .describe("Voltage that the observer takes as applied over the last sample");
     POLE = Variable::tunable("controller.pole", Kind::Real(&RATE), 60.0)
         .range(0.0, 1e5)
         .describe("rho, the error of the position has a triple pole at -rho");
@@ -171,7 +174,7 @@ variable_table! {
         .range(-10.0, 1.0)
         .describe("Where the filtered reference starts");
     CONTROLLER_FEEDBACK = Variable::tunable("controller.feedback", Kind::Enumeration(&FEEDBACK), Feedback::Estimate.number())
-        .describe("What the law is fed with");
+        .describe("Source of the law's state feedback");
     VOLTAGE_LIMIT = Variable::tunable("controller.voltage_limit", Kind::Real(&VOLTAGE), 12.0)
         .range(0.0, 1e6)
         .describe("Largest magnitude of the output; assumed");
@@ -203,6 +206,6 @@ pub static DESCRIPTION: Description = Description::new("LevitatedBallController"
         "The regression and the speed observer assume that nothing but magnet and gravity moves the ball; a disturbing \
          force biases all estimates. observer.startup_hold freezes the offset until the prefilters have forgotten that \
          the ball may not have been at rest; it costs time in which a wrong offset moves the ball.",
-        "An observer whose numbers run away starts again from its initial flux. The outputs are always finite.",
+        "An observer that diverges is reset to its initial flux. The outputs are always finite.",
     ])
     .experiment(1e-4, 5.0);

@@ -32,7 +32,7 @@ variable_table! {
     FLUX_OUTPUT = Variable::output("flux", &FLUX)
         .describe("lam, flux linkage of the coil");
     VOLTAGE_MEASURED = Variable::output("voltage_measured", &VOLTAGE)
-        .describe("Mean voltage that acted over the last step, in model exchange the one that acts; wire it to the \
+        .describe("Mean voltage applied over the last step; in model exchange the present one; wire it to the \
             controller's voltage_applied");
     CURRENT_MEASURED = SENSOR.reading;
     CONTACT = Variable::held_output("contact", Kind::Boolean)
@@ -47,9 +47,9 @@ variable_table! {
         .derivative_of("flux")
         .describe("lam' = u - R i");
     LOWER_STOP_INDICATOR = Variable::event_indicator("event_indicator.lower_stop")
-        .describe("Distance to the lower stop as a share of the free way; resting there, what presses the ball on, in g");
+        .describe("Distance to the lower stop, relative to the travel; at rest there, acceleration towards it in g");
     MAGNET_INDICATOR = Variable::event_indicator("event_indicator.magnet")
-        .describe("Distance to the magnet as a share of the free way; resting there, what presses the ball on, in g");
+        .describe("Distance to the magnet, relative to the travel; at rest there, acceleration towards it in g");
     MAGNETIC_FORCE = Variable::local("magnetic_force", Kind::Real(&FORCE), Variability::Continuous)
         .describe("lam^2 / (2 k), force of the magnet on the ball");
     MASS = mass();
@@ -62,13 +62,14 @@ variable_table! {
         .describe("Position below which the ball cannot fall; assumed");
     INITIAL_POSITION = Variable::parameter("initial.position", Kind::Real(&POSITION), 0.0)
         .range(-10.0, 1.0)
-        .describe("y at the start; beyond a stop it becomes the stop's");
+        .describe("y at the start; limited to the positions between the stops");
     INITIAL_VELOCITY = Variable::parameter("initial.velocity", Kind::Real(&VELOCITY), 0.0)
         .range(-1e3, 1e3)
         .describe("p / m at the start");
     INITIAL_FLUX = Variable::parameter("initial.flux", Kind::Real(&FLUX), LABORATORY_FLUX)
         .range(-10.0, 10.0)
-        .describe("lam at the start; the start value sqrt(2 k m g) carries the ball of the other start values");
+        .describe("lam at the start; the start value is sqrt(2 k m g), which balances the \
+            weight with the other start values");
     SENSOR_NOISE = SENSOR.noise;
     SENSOR_RESOLUTION = SENSOR.resolution;
     SENSOR_SAMPLE_TIME = SENSOR.sample_time;

@@ -80,7 +80,7 @@ impl ObserverAndLaw<COUNT> for RigObserverAndLaw {
     }
 
     fn apply_tunable_parameters(&mut self, values: &[f64; COUNT]) {
-        self.observer.adopt(observer_settings(values));
+        self.observer.apply_settings(observer_settings(values));
         self.reference_filter = ReferenceFilter::new(values[REFERENCE_FILTER], values[SAMPLE_TIME]);
         let law = law(values);
         if core::mem::discriminant(&law) != core::mem::discriminant(&self.law) {
@@ -142,7 +142,7 @@ fn log_restart(time: f64, sink: &mut dyn LogSink) {
     if sink.enabled(Topic::Observer) {
         sink.log(
             Topic::Observer,
-            format_args!("t = {time} s: the observer diverged and starts anew from the measurement"),
+            format_args!("t = {time} s: the observer diverged and is reset to the measurement"),
         );
     }
 }

@@ -48,15 +48,15 @@ choice! {
     pub(super) enum FormKind = "RigObserverForm", "Which samples an estimate uses" {
         Predictor = "predictor", "Those before the tick; the measurement is held over a sample";
         Current = "current",
-            "That of the tick, too: exact and euler correct a prediction with it, runge_kutta takes the measurement \
-             for a straight line between samples";
+            "That of the tick, too: exact and euler correct a prediction with it, runge_kutta interpolates the \
+             measurement linearly between samples";
     }
 }
 
 choice! {
     pub(super) enum MeasurementKind = "RigObserverMeasurement", "What the observer takes for its measurement" {
         Volts = "volts", "The sensor voltage";
-        Metres = "metres", "The distance that sensor_gain and sensor_offset make of it";
+        Metres = "metres", "The distance computed from it with sensor_gain and sensor_offset";
     }
 }
 
@@ -72,7 +72,7 @@ choice! {
     pub(super) enum LawKind = "RigController", "Control law" {
         Pid = "pid", "Digital PID of the sensor voltage with anti-windup";
         DisturbanceRejection = "disturbance_rejection",
-            "Through the extended state: what is unknown of the acceleration is cancelled";
+            "Linear active disturbance rejection: the estimated extended state is cancelled";
     }
 }
 
@@ -119,11 +119,11 @@ variable_table! {
         .describe("z2 at the last tick, in V/s or m/s as observer.measurement selects");
     ESTIMATE_EXTENDED = Variable::held_output("estimate.extended", Kind::Real(&OBSERVED_ACCELERATION))
         .initially_from(&["observer.initial", "observer.input_gain", "controller.operating_voltage"])
-        .describe("z3 at the last tick, what is known of the acceleration beyond b u, in V/s2 or m/s2 as \
-            observer.measurement selects; of kalman and windowed_newton the model's acceleration under the voltage that \
-            acted, with the estimated disturbance, less b u");
+        .describe("z3 at the last tick: estimate of the acceleration minus b u, in V/s2 or m/s2 as \
+            observer.measurement selects; for kalman and windowed_newton the model's acceleration under the applied \
+            voltage, plus the estimated disturbance, minus b u");
     OBSERVER_RESIDUAL = Variable::held_output("observer.residual", Kind::Real(&OBSERVED_POSITION))
-        .describe("y less what the observer expected of it at the last tick, in V or m as observer.measurement selects");
+        .describe("Innovation at the last tick: y minus its prediction, in V or m as observer.measurement selects");
     OBSERVER_RESTARTS = Variable::held_output("observer.restarts", Kind::Integer)
         .describe("How often the observer diverged and started anew from the measurement");
     SI_POSITION = Variable::local("estimate.si.position", Kind::Real(&BALL_DISTANCE), Variability::Discrete)
@@ -134,7 +134,7 @@ variable_table! {
         .describe("z3 as an acceleration, whatever observer.measurement");
     FILTERED_REFERENCE =
         Variable::local("controller.reference", Kind::Real(&SENSOR_VOLTAGE_QUANTITY), Variability::Discrete)
-        .describe("Reference behind the filter at the last tick");
+        .describe("Filtered reference at the last tick");
     TICK_TIME = Variable::local("tick_time", Kind::Real(&TIME_QUANTITY), Variability::Discrete)
         .describe("Time of the last tick, a multiple of sample_time; the start time before the first");
     SAMPLE_TIME = Variable::parameter("sample_time", Kind::Real(&DURATION), 1e-3)
@@ -148,7 +148,7 @@ variable_table! {
         .describe("Where the gains of linear and nonlinear come from");
     OBSERVER_BANDWIDTH = Variable::tunable("observer.bandwidth", Kind::Real(&BANDWIDTH), 100.0)
         .range(1e-3, 1e5)
-        .describe("w_o, minus the triple pole of the linear observer; printed in Table 3. Through the extended state \
+        .describe("w_o, minus the triple pole of the linear observer; printed in Table 3. With disturbance_rejection \
             300 is a good choice");
     OBSERVER_GAIN_1 = Variable::tunable("observer.gain[1]", Kind::Real(&FIRST_OBSERVER_GAIN), 300.0)
         .range(0.0, 1e6)
@@ -161,9 +161,9 @@ variable_table! {
         .describe("L3, printed in Tables 3 and 4");
     OBSERVER_INPUT_GAIN = Variable::tunable("observer.input_gain", Kind::Real(&OBSERVED_INPUT_GAIN), 1.0)
         .range(-1e9, 1e9)
-        .describe("b, what the observer takes for the effect of the voltage on the acceleration. Printed 1 (Tables 3, \
-            4) has the wrong sign: enough to watch; to control set it to controller.input_gain. To kalman and \
-            windowed_newton it only says what estimate.extended is beyond");
+        .describe("b, assumed input gain: acceleration per driver voltage. Printed 1 (Tables 3, 4) has \
+            the wrong sign: it suffices for estimation; for control set it to controller.input_gain. kalman and \
+            windowed_newton use it only to compute estimate.extended");
     EXPONENT_1 = Variable::tunable("observer.exponent[1]", Kind::Real(&RATIO), 1.0)
         .range(0.01, 2.0)
         .describe("alpha1 of nonlinear, printed in Table 4; 1 is linear");
@@ -192,7 +192,7 @@ variable_table! {
         .describe("Steps of runge_kutta per sample");
     WINDOW = Variable::parameter("observer.window", Kind::Integer, 24.0)
         .range(3.0, MAX_WINDOW as f64)
-        .describe("N, samples that windowed_newton explains at once");
+        .describe("N, length of windowed_newton's window in samples");
     MAX_ITERATIONS = Variable::tunable("observer.max_iterations", Kind::Integer, 3.0)
         .range(1.0, 1000.0)
         .describe("Largest number of Gauss-Newton iterations per tick of windowed_newton, which start from the last solution");
@@ -212,7 +212,7 @@ variable_table! {
         .describe("Estimate at the first tick");
     OBSERVER_VOLTAGE_SOURCE =
         Variable::parameter("observer.voltage_source", Kind::Enumeration(&VOLTAGE_SOURCE), VoltageSource::Command.number())
-        .describe("Which voltage the observer believes acted over the last sample");
+        .describe("Voltage that the observer takes as applied over the last sample");
     CONTROLLER_KIND_CHOICE = Variable::tunable("controller.kind", Kind::Enumeration(&CONTROLLER_KIND), LawKind::Pid.number())
         .describe("Control law");
     KP = Variable::tunable("controller.kp", Kind::Real(&RATIO), 4.2)

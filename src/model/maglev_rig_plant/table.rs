@@ -48,9 +48,9 @@ variable_table! {
         .derivative_of("velocity")
         .describe("x'' under the present voltage and force; 0 at rest on a stop");
     UPPER_STOP_INDICATOR = Variable::event_indicator("event_indicator.upper_stop")
-        .describe("Distance to the upper stop as a share of the free way; resting there, what presses the ball on, in g");
+        .describe("Distance to the upper stop, relative to the travel; at rest there, acceleration towards it in g");
     LOWER_STOP_INDICATOR = Variable::event_indicator("event_indicator.lower_stop")
-        .describe("Distance to the lower stop as a share of the free way; resting there, what presses the ball on, in g");
+        .describe("Distance to the lower stop, relative to the travel; at rest there, acceleration towards it in g");
     MAGNETIC_FORCE = Variable::local("magnetic_force", Kind::Real(&RIG_FORCE), Variability::Continuous)
         .describe("K i^2 / x^2 under the present voltage, upwards");
     MASS = mass();
@@ -69,7 +69,7 @@ variable_table! {
         .describe("Position at which the ball lies; assumed, within the sensor's range");
     INITIAL_POSITION = Variable::parameter("initial.position", Kind::Real(&BALL_DISTANCE), 9e-3)
         .range(0.0, 10.0)
-        .describe("x at the start, the rig manual's operating point; beyond a stop it becomes the stop's");
+        .describe("x at the start, the rig manual's operating point; limited to the positions between the stops");
     INITIAL_VELOCITY = Variable::parameter("initial.velocity", Kind::Real(&BALL_VELOCITY), 0.0)
         .range(-1e3, 1e3)
         .describe("x' at the start");

@@ -44,7 +44,7 @@ impl ObserverAndLaw<COUNT> for BearingObserverAndLaw {
     }
 
     fn apply_tunable_parameters(&mut self, values: &[f64; COUNT]) {
-        self.observer.adopt(observer_settings(values));
+        self.observer.apply_settings(observer_settings(values));
         self.law = law(values);
     }
 

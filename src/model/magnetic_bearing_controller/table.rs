@@ -63,8 +63,8 @@ variable_table! {
         .initially_from(&["observer.initial.flux"])
         .describe("Estimate of x3 at the last tick");
     OBSERVER_RESIDUAL = Variable::held_output("observer.residual", Kind::Real(&LENGTH))
-        .describe("Largest difference between measured and modelled positions in the observer's window; of \
-            kalman, between measured and predicted position");
+        .describe("Largest difference between measured and modelled positions in the observer's window; for \
+            kalman the magnitude of the innovation");
     OBSERVER_ITERATIONS = Variable::held_output("observer.iterations", Kind::Integer)
         .describe("Newton iterations of the last tick, at most observer.max_iterations; 1 of kalman");
     OBSERVER_CONVERGED = Variable::held_output("observer.converged", Kind::Boolean)
@@ -75,15 +75,15 @@ variable_table! {
     POSITION_DEVIATION =
         Variable::local("estimate.position_deviation", Kind::Real(&LENGTH), Variability::Discrete)
         .initially_from(&["observer.kind"])
-        .describe("Standard deviation of estimate.position by kalman's own account, 0 for other observers");
+        .describe("Standard deviation of estimate.position from kalman's covariance, 0 for other observers");
     VELOCITY_DEVIATION =
         Variable::local("estimate.velocity_deviation", Kind::Real(&VELOCITY), Variability::Discrete)
         .initially_from(&["observer.kind"])
-        .describe("Standard deviation of estimate.velocity by kalman's own account, 0 for other observers");
+        .describe("Standard deviation of estimate.velocity from kalman's covariance, 0 for other observers");
     FLUX_DEVIATION =
         Variable::local("estimate.flux_deviation", Kind::Real(&MAGNETIC_FLUX), Variability::Discrete)
         .initially_from(&["observer.kind"])
-        .describe("Standard deviation of estimate.flux by kalman's own account, 0 for other observers");
+        .describe("Standard deviation of estimate.flux from kalman's covariance, 0 for other observers");
     SAMPLE_TIME = Variable::parameter("sample_time", Kind::Real(&DURATION), 1e-3)
         .range(1e-6, 1.0)
         .describe("T, the controller ticks at all multiples of it, whatever the communication step size");
@@ -105,8 +105,8 @@ variable_table! {
             the residual");
     WINDOW = Variable::parameter("observer.window", Kind::Integer, SQUARE_WINDOW)
         .range(SQUARE_WINDOW, MAX_WINDOW as f64)
-        .describe("N, samples that newton explains at once: 3 is the paper's square system, more are least \
-            squares");
+        .describe("N, length of newton's window in samples: 3 gives the paper's square system, more a \
+            least-squares fit");
     FILTER_TIME = Variable::parameter("observer.filter_time", Kind::Real(&DURATION), 1e-3)
         .range(0.0, 10.0)
         .describe("T_s, time constant of the velocity filter of the reduced-order observers");
@@ -115,8 +115,8 @@ variable_table! {
         .describe("Standard deviation of the measured position that kalman assumes");
     FLUX_NOISE = Variable::tunable("observer.flux_noise", Kind::Real(&MAGNETIC_FLUX), 1e-6)
         .range(0.0, 1e3)
-        .describe("Standard deviation of what each sample adds to the flux unknown to kalman; the larger, \
-            the less it trusts its model");
+        .describe("Standard deviation of the flux process noise per sample that kalman assumes; the larger, \
+            the less it relies on its model");
     OBSERVER_INITIAL_POSITION = Variable::parameter("observer.initial.position", Kind::Real(&LENGTH), 0.0)
         .range(-1.0, 1.0)
         .describe("First component of w0, the observer's first guess");
@@ -129,11 +129,11 @@ variable_table! {
         .describe("Third component of w0; of the Newton observers also the estimate until two past samples exist");
     OBSERVER_VOLTAGE_SOURCE =
         Variable::parameter("observer.voltage_source", Kind::Enumeration(&VOLTAGE_SOURCE), VoltageSource::Command.number())
-        .describe("Which voltage the observer believes acted over the last sample");
+        .describe("Voltage that the observer takes as applied over the last sample");
     CONTROLLER_LAW = Variable::tunable("controller.law", Kind::Enumeration(&LAW), LawKind::A.number())
         .describe("Control law");
     CONTROLLER_FEEDBACK = Variable::tunable("controller.feedback", Kind::Enumeration(&FEEDBACK), Feedback::Estimate.number())
-        .describe("What the law is fed with besides the measured position");
+        .describe("Source of the law's state feedback besides the measured position");
     K1 = Variable::tunable("controller.k1", Kind::Real(&POSITION_GAIN), 0.92)
         .range(-1e6, 1e6)
         .describe("k1 of u0 = -k1 x1 - k2 x2 in the laws a, b, c");

@@ -23,7 +23,7 @@ variable_table! {
     FLUX = Variable::output("flux", &MAGNETIC_FLUX)
         .describe("x3, magnetic flux");
     VOLTAGE_MEASURED = Variable::output("voltage_measured", &VOLTAGE)
-        .describe("Mean voltage that acted over the last step, in model exchange the one that acts; wire it to the \
+        .describe("Mean voltage applied over the last step; in model exchange the present one; wire it to the \
             controller's voltage_applied");
     POSITION_MEASURED = SENSOR.reading;
     POSITION_DERIVATIVE = Variable::local("der(position)", Kind::Real(&VELOCITY), Variability::Continuous)

@@ -112,7 +112,7 @@ impl<C: ObserverAndLaw<N>, const N: usize> Model for SampledController<C, N> {
 
     fn is_consistent(&self, is_initialised: bool) -> bool {
         !is_initialised
-            || self.clock.may_stand_where_it_does(self.values[Self::ROWS.sample_time])
+            || self.clock.is_valid_for(self.values[Self::ROWS.sample_time])
                 && self.controller.is_consistent(&self.values)
     }
 }

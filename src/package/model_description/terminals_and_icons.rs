@@ -1,11 +1,11 @@
-//! `terminalsAndIcons.xml` of FMI 3.0 (text of 3.0.2, section 2.4.9): where the icon lies in a diagram, and the plug
+//! `terminalsAndIcons.xml` of FMI 3.0 (text of 3.0.2, section 2.4.9): where the icon lies in a diagram, and the terminal
 //! that fits the other model of the loop. FMI 2.0 (text of 2.0.5, section 2.3) takes the same file.
 
 use std::io;
 
 use crate::model::Description;
 use crate::package::FmiVersion;
-use crate::package::plug::Plug;
+use crate::package::terminal::Terminal;
 use crate::package::xml::{Writer, attribute, document, element, empty_element};
 
 /// The document `fmiTerminalsAndIcons`.
@@ -13,13 +13,13 @@ pub fn terminals_and_icons(description: &Description) -> String {
     let version = attribute("fmiVersion", FmiVersion::Three.text());
     document("fmiTerminalsAndIcons", [version], |writer| {
         graphical_representation(writer)?;
-        let plugs = Plug::all_of(description);
+        let terminals = Terminal::all_of(description);
         // The list must not be empty.
-        if plugs.is_empty() {
+        if terminals.is_empty() {
             return Ok(());
         }
         element(writer, "Terminals", [], |writer| {
-            plugs.iter().try_for_each(|plug| terminal(writer, description, plug))
+            terminals.iter().try_for_each(|terminal| write_terminal(writer, description, terminal))
         })
     })
 }
@@ -35,18 +35,18 @@ fn graphical_representation(writer: &mut Writer) -> io::Result<()> {
     })
 }
 
-/// `Terminal` (section 2.4.9.2): a plug of the model.
-fn terminal(writer: &mut Writer, description: &Description, plug: &Plug) -> io::Result<()> {
-    let ends = [plug.system.plant, plug.system.controller].map(|model| model.description.name);
+/// `Terminal` (section 2.4.9.2): a terminal of the model.
+fn write_terminal(writer: &mut Writer, description: &Description, terminal: &Terminal) -> io::Result<()> {
+    let ends = [terminal.system.plant, terminal.system.controller].map(|model| model.description.name);
     let other = if ends[0] == description.name { ends[1] } else { ends[0] };
     let attributes = [
-        attribute("name", plug.system.name),
+        attribute("name", terminal.system.name),
         attribute("matchingRule", "plug"),
-        attribute("terminalKind", plug.kind()),
+        attribute("terminalKind", terminal.kind()),
         attribute("description", format!("Everything that is exchanged with {other}")),
     ];
     element(writer, "Terminal", attributes, |writer| {
-        plug.members.iter().try_for_each(|member| {
+        terminal.members.iter().try_for_each(|member| {
             let attributes = [
                 attribute("variableName", member.variable),
                 attribute("memberName", member.name),

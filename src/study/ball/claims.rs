@@ -57,9 +57,9 @@ fn regulation(runs: &Runs) -> Claim {
         .stating(
             "The sensorless controller makes the ball follow sinusoids and steps from wrong initial fluxes.",
         )
-        .measured(format!("runs of {count} with |y - y*| < 0.1 mm for good"), finite(&settled) as f64, "1")
+        .measured(format!("runs of {count} with |y - y*| < 0.1 mm to the end"), finite(&settled) as f64, "1")
         .measured("slowest of these", slowest(&settled), "s")
-        .measured("runs with |y - y*| < 0.05 mm for good", finite(&within) as f64, "1")
+        .measured("runs with |y - y*| < 0.05 mm to the end", finite(&within) as f64, "1")
         .measured("largest |y - y*|", 1e3 * largest(peaks), "mm")
         .measured("largest rms |y - y*| of the last second", 1e3 * largest(late), "mm")
         .judged(
@@ -77,7 +77,7 @@ fn flux(runs: &Runs) -> Claim {
     let late = figures_2_and_3(runs, |run| last_second(run, FLUX_ERROR));
     Claim::new("flux_estimate_converges", "Proposition 6, figures 2 and 3")
         .stating("The DREM estimator of Proposition 6 makes the flux error vanish.")
-        .measured(format!("runs of {count} with an error below 1 % for good"), converged as f64, "1")
+        .measured(format!("runs of {count} with an error below 1 % to the end"), converged as f64, "1")
         .measured("slowest of the sinusoids", slowest(&sinusoids), "s")
         .measured("slowest of the steps", slowest(&steps), "s")
         .measured("largest rms error of the last second, share of lam0", largest(late), "1")

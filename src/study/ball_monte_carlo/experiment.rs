@@ -32,7 +32,7 @@ const TUNING: f64 = 0.25;
 pub struct Extent {
     /// Most runs per spread, reference and estimator.
     pub runs: u32,
-    /// Every how manieth setting of DREM is tried.
+    /// Only every `stride`th setting of DREM is tried; 1 for all.
     pub stride: usize,
 }
 

@@ -159,7 +159,7 @@ pub fn advice(comparison: &Comparison) -> Vec<String> {
                 CANDIDATES[*who].name,
                 row[*who].flux
             ),
-            None => format!("at {} none keeps the loop up", quantity(*noise, "m")),
+            None => format!("at {} none keeps every rotor levitated", quantity(*noise, "m")),
         })
         .collect();
     let newton = index_of("Newton, printed model");
@@ -178,7 +178,7 @@ pub fn advice(comparison: &Comparison) -> Vec<String> {
     let kalman = index_of("Kalman, default noise");
     let worst = largest(scores.iter().map(|row| row[kalman].flux));
     vec![format!(
-        "Which observer at T = 1 ms, by the smallest flux error among those that keep every loop up: {}. \
+        "Which observer at T = 1 ms, by the smallest flux error among those that keep every rotor levitated: {}. \
          {usable} The Kalman filter with its default noise never does worse than {worst:.1e} Wb and is the \
          one to start with on a real sensor; tell it the sensor's noise, and a smaller flux noise the more \
          the model is trusted.",

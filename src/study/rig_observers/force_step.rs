@@ -79,7 +79,7 @@ pub struct Outcome {
 }
 
 pub fn compare(packages: &LoopPackages, progress: Progress<'_>) -> Result<Vec<Outcome>, StudyError> {
-    sweep(&laws(), progress, "rig-observers: pushing the ball", |law| {
+    sweep(&laws(), progress, "rig-observers: disturbance steps", |law| {
         let run = |noise: f64, mass_ratio: f64| {
             let disturbance_step = DISTURBANCE_STEP;
             let scenario = Scenario::new(Reference::Hold, DURATION, &law.parameters);

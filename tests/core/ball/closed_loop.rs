@@ -115,7 +115,7 @@ fn error_of_the_velocity_decays_with_the_squared_flux() {
     }
 }
 
-/// A flux estimate that is 2 % too small for good leaves the ball at rest, elsewhere; the closed form is that of the
+/// A flux estimate that stays 2 % too small leaves the ball at rest, elsewhere; the closed form is that of the
 /// observers and the law at rest.
 #[test]
 fn frozen_offset_biases_the_position_as_its_closed_form_says() {

@@ -68,7 +68,7 @@ unsafe extern "C-unwind" fn log2(
     category: fmi2String,
     message: fmi2String,
 ) {
-    // SAFETY: the tests pass the environment of a living recorder; the library vouches for the strings.
+    // SAFETY: the tests pass the environment of a living recorder; the library passes C strings that live during the call.
     unsafe { Recorder::append(environment, Some(instance_name), status, category, message) }
 }
 

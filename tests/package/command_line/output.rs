@@ -228,3 +228,21 @@ fn a_diverging_search_ends_with_what_it_has() {
         assert!(directory.path().join("results/rig-nonlinear-paper").with_extension(extension).is_file());
     }
 }
+
+/// Guards: axes of more decades than numbers have ratios, on which the drawing never ended.
+#[test]
+fn searches_that_went_as_far_as_numbers_reach_are_drawn() {
+    let noise_aware = ["linear", "--objective", "noise-aware", "--noise", "1e-3", "--particles", "2"];
+    for arguments in
+        [&["nonlinear", "--particles", "4"][..], &["nonlinear", "--particles", "7"], &noise_aware]
+    {
+        let directory = tempfile::tempdir().unwrap();
+        let swarm =
+            ["tune", "--swarm", "printed", "--iterations", "14000", "--out", "far.json", "--observer"];
+        let output = maglev_fmu(directory.path(), &[&swarm[..], arguments].concat()).output().unwrap();
+        assert!(output.status.success(), "{arguments:?}: {output:?}");
+        for name in ["far.json", "far.svg", "far.png", "far.csv"] {
+            assert!(directory.path().join(name).is_file(), "{arguments:?}: {name}");
+        }
+    }
+}

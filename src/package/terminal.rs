@@ -1,7 +1,7 @@
-//! The plug of a model: what it exchanges with the other model of its loop.
+//! The terminal of a model: what it exchanges with the other model of its loop.
 //!
-//! Both plugs of a loop carry the same member names, those of the plant's variables, and the same kind, so that an
-//! importer can wire a loop by connecting one plug with the other.
+//! Both terminals of a loop carry the same member names, those of the plant's variables, and the same kind, so that an
+//! importer can wire a loop by connecting one terminal with the other.
 
 use crate::model::Description;
 use crate::model::system::{System, systems};
@@ -17,14 +17,14 @@ pub struct Member {
 
 /// A model's side of a loop.
 #[derive(Clone, Debug)]
-pub struct Plug {
+pub struct Terminal {
     pub system: &'static System,
     /// In the order of the system's table: what the controller reads, then what acts on the plant.
     pub members: Vec<Member>,
 }
 
-impl Plug {
-    /// The plugs of a model, one for each loop that it is part of.
+impl Terminal {
+    /// The terminals of a model, one for each loop that it is part of.
     pub fn all_of(description: &Description) -> Vec<Self> {
         systems().filter_map(|system| Self::new(description, system)).collect()
     }
@@ -64,11 +64,11 @@ mod tests {
     use crate::model::variable::Causality;
 
     #[test]
-    fn plugs_of_a_loop_match_and_outputs_meet_inputs() {
+    fn terminals_of_a_loop_match_and_outputs_meet_inputs() {
         for system in systems() {
             let [plant, controller] = [system.plant, system.controller].map(|model| {
-                let plugs = Plug::all_of(model.description);
-                plugs.into_iter().find(|plug| plug.system.name == system.name).unwrap()
+                let terminals = Terminal::all_of(model.description);
+                terminals.into_iter().find(|terminal| terminal.system.name == system.name).unwrap()
             });
             assert_eq!(plant.kind(), controller.kind());
             assert_eq!(plant.members.len(), system.sensing.len() + system.actuation.len());

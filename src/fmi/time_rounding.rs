@@ -1,0 +1,224 @@
+//! Rounding of the times that importers name: what of it is ignored, what passes, and what is none.
+
+use serde::{Deserialize, Serialize};
+
+/// Rounding of a time, in units in the last place.
+pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// Half a unit in the last place of 1.
+const HALF_A_UNIT: f64 = 0.5 * f64::EPSILON;
+
+/// Share of a step by which its begin may miss the end of the last step, and its end the stop time, by rounding.
+const TOLERANCE: f64 = 1e-9;
+
+/// Share of a step by which its end may miss the stop time at most, however many steps went before: no step is taken for
+/// rounding. Ten million steps of one size round by less.
+const LARGEST_TOLERANCE: f64 = 1e-2;
+
+/// What the times of a simulation have rounded by so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct TimeRounding {
+    /// By how much the sum of the steps so far may be off \[s\]: each addition rounds by up to half a unit in the last
+    /// place of the time it leads to. Importers add up step sizes, as FMI 2.0.5 asks (section 4.2.1: t_{i+1} = t_i + h_i).
+    /// After n steps of one size it is n eps t / 4.
+    drift: f64,
+    /// Sum of the gaps between steps that were ignored \[s\].
+    ignored_gaps: f64,
+    /// [`Self::drift`] when such a sum was last let pass \[s\].
+    drift_before: f64,
+}
+
+impl TimeRounding {
+    /// Whether a simulation can have rounded like this.
+    pub fn is_possible(&self) -> bool {
+        (0.0..f64::INFINITY).contains(&self.drift)
+            && (0.0..=self.drift).contains(&self.drift_before)
+            && self.ignored_gaps.is_finite()
+    }
+
+    /// What steps that are added up can have rounded by since ignored gaps were last let pass \[s\].
+    #[inline(always)]
+    fn recent_drift(&self) -> f64 {
+        self.drift - self.drift_before
+    }
+
+    /// Whether the gaps that were ignored are explained by steps that are added up.
+    #[inline(always)]
+    pub fn explains_ignored_gaps(&self) -> bool {
+        self.ignored_gaps.abs() <= self.recent_drift()
+    }
+
+    /// Time \[s\] that passes in a step over `step_size` whose begin misses the end of the last step by `gap`, both in s and
+    /// at times of up to `largest_time` \[s\].
+    ///
+    /// A gap is ignored up to a few units in the last place, passes in addition up to a billionth of the step, or of the
+    /// times if those are smaller, and is no rounding beyond: `None`. What was ignored passes as well once it has come to
+    /// more than steps that are added up can have rounded.
+    pub fn duration(&self, gap: f64, step_size: f64, largest_time: f64) -> Option<f64> {
+        let missed = self.ignored_gaps + gap;
+        // Times round by their own size, be the step as long as it likes; where they come to 0, by that of those before.
+        let rounding = ROUNDING * largest_time;
+        let rounding_before = (ROUNDING / HALF_A_UNIT * self.drift).min(TOLERANCE * step_size);
+        let tolerance = rounding.max(TOLERANCE * step_size.min(largest_time)).max(rounding_before);
+        if gap.abs() <= rounding && missed.abs() <= rounding + self.recent_drift() {
+            Some(step_size)
+        } else if gap.abs() <= tolerance && step_size + missed > 0.0 {
+            Some(step_size + missed)
+        } else {
+            None
+        }
+    }
+
+    /// By how much `time` may be past the stop time, after a last step over `step`; all in s.
+    pub fn tolerance_of_end(&self, time: f64, step: f64) -> f64 {
+        self.drift.max(TOLERANCE * step).min(LARGEST_TOLERANCE * step) + ROUNDING * time.abs()
+    }
+
+    /// A step over `step_size` begins `gap` after the end of the last one, and `duration` passes in it; all in s.
+    #[inline]
+    pub fn begin_step(&mut self, gap: f64, step_size: f64, duration: f64) {
+        self.ignored_gaps += gap + (step_size - duration);
+        if duration != step_size {
+            self.drift_before = self.drift;
+        }
+    }
+
+    /// Time has come to `time` \[s\] by an addition.
+    #[inline]
+    pub fn reach(&mut self, time: f64) {
+        self.drift += HALF_A_UNIT * time.abs();
+    }
+
+    /// No gap is ignored any more: the model's clock says what the importer says.
+    pub fn forget_gaps(&mut self) {
+        self.ignored_gaps = 0.0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{CallError, CommunicationPoint};
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Guards: communication points start + k h of importers that start before 0, refused where they come to 0.
+        #[test]
+        fn multiples_of_a_step_follow_each_other_through_zero(start in -10.0..-1e-3f64, steps in 1u32..3000) {
+            let h = -start / f64::from(steps);
+            let (mut point, mut passed) = (CommunicationPoint::new(start, None), 0.0);
+            for k in 0..steps + 5 {
+                let time = start + f64::from(k) * h;
+                let duration = point.duration(time, h);
+                prop_assert!(duration.is_ok(), "start {start} step {h} number {k}: {duration:?}");
+                let duration = duration.unwrap();
+                passed += duration;
+                point.take_step(time, h, duration);
+            }
+            let expected = f64::from(steps + 5) * h;
+            prop_assert!((passed - expected).abs() < 1e-11 * expected, "{passed} {expected}");
+        }
+    }
+
+    /// Steps from start + k h, computed by `time(k)`; the time that passes in each and in all of them.
+    fn passed(start: f64, steps: u32, h: f64, time: impl Fn(u32) -> f64) -> (Vec<f64>, f64) {
+        let mut point = CommunicationPoint::new(start, None);
+        let durations: Vec<f64> = (0..steps)
+            .map(|k| {
+                let duration = point.duration(time(k), h).unwrap();
+                point.take_step(time(k), h, duration);
+                duration
+            })
+            .collect();
+        let sum = durations.iter().sum();
+        (durations, sum)
+    }
+
+    proptest! {
+        /// Bits depend on it: importers that count their steps and such that add them up let the same time pass.
+        #[test]
+        fn rounding_of_honest_importers_changes_no_step(
+            exponent in -3.0..9.0f64, step_exponent in -5.0..-1.0f64, steps in 1000u32..20_000,
+        ) {
+            let (start, h) = (10f64.powf(exponent), 10f64.powf(step_exponent));
+            let (counted, _) = passed(start, steps, h, |k| start + f64::from(k) * h);
+            prop_assert!(counted.iter().all(|duration| *duration == h));
+            let mut times = vec![start];
+            (1..steps as usize).for_each(|k| times.push(times[k - 1] + h));
+            let (added_up, _) = passed(start, steps, h, |k| times[k as usize]);
+            prop_assert!(added_up.iter().all(|duration| *duration == h));
+        }
+
+        /// Guards: a step size that is off by some units in the last place of the time took the clock away for ever, at
+        /// 1.7e9 s by 39 ms in 20 s.
+        #[test]
+        fn gaps_that_add_up_pass(
+            exponent in 0.0..10.0f64, units in -14.0..14.0f64, steps in 1000u32..20_000,
+        ) {
+            let (start, h) = (10f64.powf(exponent), 1e-3);
+            let wrong = h + units * f64::EPSILON * start;
+            prop_assume!(h > 64.0 * f64::EPSILON * start);
+            let time = |k: u32| start + f64::from(k) * h;
+            let (_, sum) = passed(start, steps, wrong, time);
+            let expected = time(steps - 1) + wrong - start;
+            // What the steps round by themselves, and what is still ignored.
+            let rounding = (f64::from(steps) + 32.0) * f64::EPSILON * time(steps);
+            prop_assert!((sum - expected).abs() <= rounding, "{sum} {expected} {rounding}");
+        }
+    }
+
+    /// Takes all but the last of `steps` steps of `h` \[s\] as an importer that adds them up; returns where it stands.
+    fn added_up(point: &mut CommunicationPoint, h: f64, steps: u32) -> f64 {
+        let mut time = 0.0;
+        for _ in 1..steps {
+            assert_eq!(point.duration(time, h), Ok(h), "at {time} s");
+            point.take_step(time, h, h);
+            time += h;
+        }
+        time
+    }
+
+    /// Guards: the last of a million steps refused, since their sum is 2.2e-9 s late.
+    #[test]
+    fn importers_that_add_up_their_steps_reach_the_stop_time() {
+        let mut latest = 0.0;
+        for (h, steps, stop_time) in [
+            (1e-4, 1_000_000, 100.0),
+            (1e-3, 100_000, 100.0),
+            (1e-3, 1_000_000, 1000.0),
+            (7e-4, 1_000_000, 700.0),
+            (1.0 / 3000.0, 300_000, 100.0),
+        ] {
+            let mut point = CommunicationPoint::new(0.0, Some(stop_time));
+            let time = added_up(&mut point, h, steps);
+            latest = f64::max(latest, (time + h - stop_time) / h);
+            assert_eq!(point.duration(time, h), Ok(h), "{steps} steps of {h} s");
+            // The bound of the sum of so many roundings.
+            let bound = f64::from(steps) * f64::EPSILON * stop_time / 4.0;
+            assert!(
+                (0.99..1.01).contains(&(point.rounding.drift / bound)),
+                "{} {bound}",
+                point.rounding.drift
+            );
+            assert!((time + h - stop_time).abs() < bound);
+
+            for past in [1e-3 * h, 0.5 * h, h] {
+                let late = point.duration(time, h + past);
+                assert!(matches!(late, Err(CallError::PastStopTime { .. })), "{past} s past: {late:?}");
+            }
+            point.move_to(time + h);
+            assert!(matches!(point.duration(time + h, h), Err(CallError::PastStopTime { .. })));
+        }
+        assert!(latest > 1e-5, "a sum that ends late is among them: {latest} of a step");
+    }
+
+    #[test]
+    fn no_number_of_steps_makes_up_for_a_hundredth_of_one() {
+        let mut point = CommunicationPoint::new(0.0, Some(1.0));
+        point.rounding.drift = 1.0;
+        point.move_to(0.9);
+        assert!(point.duration(0.9, 0.1 + 0.9e-3).is_ok());
+        assert!(point.duration(0.9, 0.1 + 1.1e-3).is_err());
+        // A solver that has gone back by a rounding.
+        assert!(point.require_before_stop_time("time", 0.9, -1e-17).is_ok());
+    }
+}
