@@ -173,6 +173,8 @@ impl Tune {
             &searches,
             Some(tuned.printed_cost),
         );
+        // The result first: it is what has taken the time.
+        output::make_directory(directory)?;
         let written = file.write(&path)?;
         output::write_figure(directory, &figure)?;
 

@@ -131,18 +131,26 @@ impl<const N: usize> FactoredCovariance<N> {
         let last = self.diagonal[N - 1];
         let kept = last / (last + variance);
         // What the last state's own share of P + variance e e^T leaves is again of rank one.
-        let rest: [f64; N] = from_fn(|row| if row + 1 < N { self.unit[row][N - 1] } else { 0.0 });
+        let rest = from_fn(|row| self.unit[row][N - 1]);
         self.diagonal[N - 1] = last + variance;
         for row in 0..N - 1 {
             self.unit[row][N - 1] *= kept;
         }
-        self.add_noise(rest, variance * kept);
+        self.add_noise_to_first(N - 1, rest, variance * kept);
     }
 
-    /// P := P + `variance` g g^T with g = `direction`.
+    /// P := P + `variance` g g^T with g = `direction` in the first M states, 0 in the others.
     #[inline]
-    pub fn add_noise(&mut self, mut direction: [f64; N], mut variance: f64) {
-        for column in (0..N).rev() {
+    pub fn add_noise<const M: usize>(&mut self, direction: [f64; M], variance: f64) {
+        const { assert!(M <= N) };
+        let direction = from_fn(|row| if row < M { direction[row] } else { 0.0 });
+        self.add_noise_to_first(M, direction, variance);
+    }
+
+    /// As [`Self::add_noise`], the first `count` states being those of which `direction` is used.
+    #[inline(always)]
+    fn add_noise_to_first(&mut self, count: usize, mut direction: [f64; N], mut variance: f64) {
+        for column in (0..count).rev() {
             let along = direction[column];
             let before = self.diagonal[column];
             let addition = variance * along * along;

@@ -188,7 +188,7 @@ impl KalmanFilter<3> {
         let mean = combine([middle, bend, bend], [1.0, 1.0 / 6.0, 0.0]);
         let slope = combine(slopes, [1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0]);
         self.step(settings, voltage, mean, slope);
-        self.covariance.add_noise([bend.position, bend.velocity, 0.0], 1.0 / 18.0);
+        self.covariance.add_noise([bend.position, bend.velocity], 1.0 / 18.0);
     }
 
     /// One step linearised at the flux `reference`.

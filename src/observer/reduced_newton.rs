@@ -61,7 +61,8 @@ impl ReducedNewtonSettings {
         }
         let (bearing, map, t) = (self.bearing, self.map, self.sample_time);
         let share = (1.0 - self.memory()) / t;
-        let (effect, slope) = bearing.linearised_force_effect(map, flux, voltage, t);
+        let effect = bearing.force_effect(map, flux, voltage, t);
+        let slope = bearing.force_effect_slope(map, flux, voltage, t);
         (effect.velocity - share * effect.position, slope.velocity - share * slope.position)
     }
 }
@@ -173,7 +174,8 @@ impl Equation {
     /// The model of `force_rise` for the flux z = x3\[k-1\], and its derivative.
     fn modelled(&self, settings: &ReducedNewtonSettings, flux: f64) -> (f64, f64) {
         let (map, t) = (settings.map, settings.sample_time);
-        let (effect, slope) = settings.bearing.linearised_force_effect(map, flux, self.voltages[1], t);
+        let effect = settings.bearing.force_effect(map, flux, self.voltages[1], t);
+        let slope = settings.bearing.force_effect_slope(map, flux, self.voltages[1], t);
         let (lag, lag_slope) = settings.lag_and_slope(flux - self.voltages[0] * t, self.voltages[0]);
         (t * lag + effect.position, t * lag_slope + slope.position)
     }

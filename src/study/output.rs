@@ -50,7 +50,8 @@ pub fn write_figure(directory: &Path, figure: &FigureWithData) -> Result<String,
     Ok(svg)
 }
 
-fn make_directory(path: &Path) -> Result<(), StudyError> {
+/// Makes a directory, and those that it lies in.
+pub fn make_directory(path: &Path) -> Result<(), StudyError> {
     fs::create_dir_all(path).map_err(|source| StudyError::Write { path: path.to_owned(), source })
 }
 

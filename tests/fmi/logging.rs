@@ -175,7 +175,7 @@ fn refusal_of_token(standard: Standard, token: &CStr) -> String {
 
 #[test]
 fn characters_with_a_meaning_are_escaped() {
-    let quoted = "the token \"{50 %s %n ##r1##}\" is none";
+    let quoted = "the token \"{50 %s %n ##r1##}\" is not one";
     let text = refusal_of_token(Standard::Fmi3, c"{50 %s %n #r1#}");
     assert!(text.contains(quoted), "{text}");
     // The message of FMI 2.0 is a format of printf.

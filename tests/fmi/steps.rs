@@ -51,7 +51,7 @@ fn a_step_ends_at_a_finite_time() {
             let (_, sample_time) = component.description.find("sample_time").unwrap();
             assert_eq!(component.enter_initialization(start, None), OK);
             component.recorder.clear();
-            let ticks = format!("to count ticks every {} s", sample_time.start);
+            let ticks = format!("so that ticks every {} s can be counted", sample_time.start);
             let said = ["ExitInitializationMode", "startTime = 1.7e308 s", &ticks];
             component.assert_refused(component.exit_initialization(), &said);
             continue;

@@ -280,7 +280,7 @@ pub static DESCRIPTION: Description = Description::new("MaglevRigController", &V
          disturbance permits. They measure in metres; observer.measurement selects what the estimates are given in. \
          Through the extended state they close the loop like the others, with observer.input_gain equal to controller.input_gain.",
         "An observer that diverges, as one with too large gains by Euler does, or whose model says that the ball is \
-         beyond the coil, starts anew from the measurement and \
+         beyond the coil, is reset to the measurement and \
          counts that in observer.restarts; the outputs are finite and the voltage is within its limits, always.",
     ])
     .experiment(1e-3, 10.0);

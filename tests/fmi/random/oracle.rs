@@ -164,8 +164,11 @@ impl Oracle<'_> {
         let model = self.model;
         let mut found = Vec::new();
         let is_stepping = matches!(model.state, State::Step | State::Activation | State::Intermediate);
-        let stays_past_stop =
-            model.state == State::Continuous && model.is_past_stop(model.time, model.time - model.earliest());
+        // What was accepted at this point may come again.
+        let is_accepted = model.time <= model.last_event.max(model.completed[1]);
+        let stays_past_stop = model.state == State::Continuous
+            && !is_accepted
+            && model.is_past_stop(model.time, model.time - model.earliest());
         match call {
             Call::Get { references, .. } if is_stepping && model.has_set && !references.is_empty() => {
                 found.push("read-after-set");

@@ -102,9 +102,11 @@ fn instantiation_may_be_left_and_leaks_nothing() {
         let (good, bad) = (token(), CString::new("{}").unwrap());
         for standard in BOTH {
             let before = blocks();
-            for (token, logging_on, said) in
-                [(&good, true, "instantiated"), (&bad, true, "none of this"), (&bad, false, "none of this")]
-            {
+            for (token, logging_on, said) in [
+                (&good, true, "instantiated"),
+                (&bad, true, "not one of this library"),
+                (&bad, false, "not one of this library"),
+            ] {
                 importer.leave_after(0);
                 let left = importer.protect(|| {
                     instantiate(importer, standard, token, logging_on);

@@ -187,7 +187,7 @@ fn nothing_is_put_beside_a_device() {
         let output = maglev_fmu(directory.path(), &arguments).output().unwrap();
         let message = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{file}: {message}");
-        assert!(message.contains(&format!("{reason}: expected a file")), "{message}");
+        assert!(message.contains(&format!("{reason}: expected a regular file")), "{message}");
     }
     assert_eq!([names(Path::new("/dev")), names(directory.path())], before);
 }
