@@ -198,12 +198,13 @@ NOTES = """\
   models in a package therefore have the start values of the loop inside, and a controller lets the first step pass.
 - The packages' parameter sets have no enumerations, since none of the programs takes them: {enumerations}.
 - The step of a package is in its default experiment, where libcosim reads it, on its system, where OMSimulator writes it
-  in packages of its own, and in the default experiments of its models. FMPy and ecospy are told it. No loop bears FMPy's own choice of 10 ms, with which each value acts two steps late: the
-  observer of the bearing would see ten equal positions in a row and the coil of the ball forgets its current in 5 ms, so
-  that even the true states fed back lose it; of the rig the printed PID is lost from 2 ms on. The controllers in the
-  packages refuse steps beyond 1 ms and say so. Ball and rig bear all those from 0.1 ms that were tried, 0.3 and 0.7 ms
-  among them; the bearing needs one of which its sample time of 1 ms is a multiple (0.5 ms, 0.25 ms): otherwise ticks
-  lie within steps, whose inputs are older, and the observer, which takes positions to the last digit, loses the rotor.
+  in packages of its own, and in the default experiments of its models. FMPy and ecospy are
+  told it. With FMPy's own choice of 10 ms each value acts two steps late, and no loop is stable: the bearing's observer
+  would see ten equal positions in a row, the current of the ball's coil decays within 5 ms, so that even state feedback
+  from the true states loses the ball, and on the rig the printed PID is unstable from 2 ms on. The controllers in the
+  packages refuse steps beyond 1 ms and say so. Ball and rig are stable with all steps from 0.1 ms on that were tried, 0.3
+  and 0.7 ms among them; the bearing's sample time of 1 ms has to be a multiple of the step (0.5 ms, 0.25 ms): otherwise
+  ticks lie within steps and use older inputs, and the observer, which inverts exact positions, loses the rotor.
 - OMSimulator's Python package downloads its program from a server of its own when it is installed, which the tests
   cannot rely on; it is not among the programs.
 """

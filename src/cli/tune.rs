@@ -144,7 +144,7 @@ impl Tune {
         let title = format!("rig-{}-{}", name(&self.observer), name(&self.objective));
         let path =
             self.out.clone().unwrap_or_else(|| PathBuf::from("results").join(&title).with_extension("json"));
-        // Fewer than asked for if the swarm has diverged; the first of the history is the swarm as it was strewn.
+        // Fewer than asked for if the swarm has diverged; the first of the history is the swarm as it was initialised.
         let iterations = tuned.optimum.history.len().saturating_sub(1);
         let mut provenance = json!({
             "program": concat!("maglev-fmu ", env!("CARGO_PKG_VERSION")),

@@ -27,7 +27,7 @@ pub type Range = (f64, f64);
 /// The swarm after an iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Iteration {
-    /// 0 is the swarm as it was strewn.
+    /// 0 is the swarm as it was initialised.
     pub number: u64,
     pub best_cost: f64,
     /// Root mean square over all particles and coordinates of velocity over range: near 0 once the swarm has settled.
@@ -197,7 +197,7 @@ where
         problem: &mut Problem<Boxed<'_, C>>,
         mut state: State,
     ) -> Result<(State, Option<KV>), Error> {
-        let missing = || Error::msg("a swarm must be strewn before it flies");
+        let missing = || Error::msg("a swarm must be initialised before it moves");
         let mut best = state.take_individual().ok_or_else(missing)?;
         let mut population = state.take_population().ok_or_else(missing)?;
         let inertia = self.settings.inertia_at(self.history.len() as u64);
