@@ -5,9 +5,13 @@ use super::{Panel, Stroke};
 /// Most points a line keeps; more cannot be seen in a panel.
 const RESOLUTION: usize = 1000;
 
-/// Largest magnitude that is drawn, and the inverse of the smallest on a logarithmic axis: what is beyond lies on the edge.
-/// Lengths of linear and ratios of logarithmic axes have to be numbers, too.
-const LARGEST: f64 = 1e150;
+/// Largest magnitudes that are drawn, on linear axes, whose length has to be a number, and on logarithmic ones, which end
+/// at a power of ten; what is beyond lies on the edge.
+const LARGEST: f64 = 5e307;
+const LARGEST_POWER: f64 = 1e308;
+
+/// Largest ratio of two values on a logarithmic axis; what is smaller lies on the edge.
+const LARGEST_RATIO: f64 = 1e300;
 
 /// The points of each series inside the x range that can be drawn, thinned to what a panel resolves.
 pub(super) fn visible(panel: &Panel) -> Vec<Vec<(f64, f64)>> {
@@ -20,10 +24,11 @@ pub(super) fn visible(panel: &Panel) -> Vec<Vec<(f64, f64)>> {
             && (!panel.x_logarithmic || x > 0.0)
             && (!panel.logarithmic || y > 0.0)
     };
-    let limited = |value: f64, logarithmic: bool| {
-        value.clamp(if logarithmic { 1.0 / LARGEST } else { -LARGEST }, LARGEST)
-    };
-    let limited = |(x, y): (f64, f64)| (limited(x, panel.x_logarithmic), limited(y, panel.logarithmic));
+    let all =
+        || panel.series.iter().flat_map(|series| series.points.iter().filter(|point| is_drawable(point)));
+    let x_limits = limits(panel.x_logarithmic, all().map(|point| point.0));
+    let y_limits = limits(panel.logarithmic, all().map(|point| point.1));
+    let limited = |(x, y): (f64, f64)| (x.clamp(x_limits.0, x_limits.1), y.clamp(y_limits.0, y_limits.1));
     panel
         .series
         .iter()
@@ -33,6 +38,15 @@ pub(super) fn visible(panel: &Panel) -> Vec<Vec<(f64, f64)>> {
             if series.stroke == Stroke::Held { staircase(&points) } else { points }
         })
         .collect()
+}
+
+/// Smallest and largest value that an axis can show along with all others.
+fn limits(logarithmic: bool, values: impl Iterator<Item = f64>) -> (f64, f64) {
+    if !logarithmic {
+        return (-LARGEST, LARGEST);
+    }
+    let largest = values.fold(f64::MIN_POSITIVE, f64::max).min(LARGEST_POWER);
+    ((largest / LARGEST_RATIO).max(f64::MIN_POSITIVE), LARGEST_POWER)
 }
 
 /// Adds a corner before each new value.
@@ -92,6 +106,15 @@ mod tests {
             // Three points on linear axes, the two that are positive where their axis is logarithmic.
             assert_eq!(document.matches("<circle").count(), 3 + 2 + 3 + 2, "{turned}");
         }
+    }
+
+    /// Guards: a swarm that seemed to settle where the drawing had ended.
+    #[test]
+    fn growth_is_drawn_as_far_as_numbers_reach() {
+        let growth = (0..=310).map(|decade| (f64::from(decade), 10f64.powi(decade - 2)));
+        let panel = Panel::new("", "", "").dots("", 0, growth.clone()).logarithmic();
+        let [points] = &visible(&panel)[..] else { panic!("one series") };
+        assert!(points.iter().zip(growth).all(|(drawn, (_, y))| (drawn.1 / y.max(1e8) - 1.0).abs() < 1e-9));
     }
 
     #[test]
