@@ -42,16 +42,10 @@ impl CommunicationPoint {
         let end = point + step_size;
         // Nearly every step. An end that is finite was reached from finite numbers, and no comparison holds of what is none.
         let is_ordinary = step_size > 0.0 && end <= self.stop_time && end < f64::INFINITY;
-        if is_ordinary && self.is_here(point) && self.rounding.explains_ignored_gaps() {
+        if is_ordinary && self.rounding.is_ignored(point - self.now, ROUNDING * self.now.abs()) {
             return Ok(step_size);
         }
         self.duration_in_full(point, step_size)
-    }
-
-    /// Whether `point` is the end of the last step, but for a few units in the last place.
-    #[inline(always)]
-    fn is_here(&self, point: f64) -> bool {
-        (point - self.now).abs() <= ROUNDING * self.now.abs()
     }
 
     /// As [`Self::duration`], for every step and with the reasons of refusals.
@@ -117,7 +111,7 @@ impl CommunicationPoint {
     /// The begin of [`Self::take_step`]; its end is told by [`Self::move_to`].
     #[inline]
     pub fn begin_step(&mut self, point: f64, step_size: f64, duration: f64) {
-        self.rounding.begin_step(point - self.now, step_size, duration);
+        self.rounding.begin_step(point - self.now, point, step_size, duration);
     }
 
     /// Time has come to `time` \[s\].
@@ -127,10 +121,10 @@ impl CommunicationPoint {
         self.rounding.reach(time);
     }
 
-    /// Time has come to `time` \[s\], which is also what the model's clock says.
-    pub fn move_to_time_of_clock(&mut self, time: f64) {
+    /// A step has ended at `time`, where the model's clock says `clock_time`, both in s.
+    pub fn move_to_time_of_clock(&mut self, time: f64, clock_time: f64) {
+        self.rounding.agree(time - self.now, time - clock_time);
         self.move_to(time);
-        self.rounding.forget_gaps();
     }
 }
 
@@ -142,7 +136,7 @@ mod tests {
     fn rounding_is_ignored_and_small_gaps_pass() {
         let mut point = CommunicationPoint::new(0.0, None);
         assert_eq!(point.duration(0.0, 0.1), Ok(0.1));
-        point.move_to(0.1);
+        point.take_step(0.0, 0.1, 0.1);
         assert_eq!(point.duration(0.100_000_000_000_000_03, 0.1), Ok(0.1));
         assert_eq!(point.duration(0.100_000_000_05, 0.1), Ok(0.1 + (0.100_000_000_05 - 0.1)));
         assert_eq!(point.now(), 0.1);
@@ -151,7 +145,7 @@ mod tests {
     #[test]
     fn a_gap_beyond_rounding_does_not_follow_however_long_the_step() {
         let mut point = CommunicationPoint::new(0.0, None);
-        point.move_to(1e-3);
+        point.take_step(0.0, 1e-3, 1e-3);
         let long = [1000.0, 9e8, 1e12, 1e300].map(|step_size| (0.9, step_size));
         let short = [(1.001e-3, 1e-3), (0.999e-3, 1e-3), (1e-3 + 1e-11, 1e-3), (0.0, 1e12)];
         for (time, step_size) in long.into_iter().chain(short) {
@@ -160,7 +154,7 @@ mod tests {
         }
         // However many steps went before.
         let mut point = CommunicationPoint::new(0.0, None);
-        (1..=1_000_000).for_each(|k| point.move_to(f64::from(k) * 1e-3));
+        (0..1_000_000).for_each(|k| point.take_step(f64::from(k) * 1e-3, 1e-3, 1e-3));
         for (gap, step_size) in [(0.2, 1e9), (1e-5, 1e9), (1e-5, 1e300), (1e-7, 1e-3)] {
             let refused = point.duration(1000.0 + gap, step_size);
             assert!(
@@ -173,7 +167,7 @@ mod tests {
         for k in 1..=10 {
             let time = point.now();
             assert_eq!(point.duration(time, 0.1), Ok(0.1));
-            point.move_to(time + 0.1);
+            point.take_step(time, 0.1, 0.1);
             let multiple = -1.0 + f64::from(k) * 0.1;
             assert!((point.duration(multiple, 0.1).unwrap() - 0.1).abs() < 1e-15, "{multiple}");
         }

@@ -147,7 +147,7 @@ impl Instance {
             }
             None => {
                 clock.pass(step.rest);
-                self.state.communication.move_to_time_of_clock(step.end);
+                self.state.communication.move_to_time_of_clock(step.end, clock.time());
             }
         }
         let is_event = matches!(self.interface, Interface::CoSimulationWithEvents { .. }) && clock.is_due();

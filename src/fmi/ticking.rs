@@ -64,8 +64,9 @@ impl Instance {
                 clock.pass(wait);
                 if wait > 0.0 {
                     // The importer's time may be off by rounding; a step never goes back nor beyond its end.
-                    let reached = clock.next_time().max(point).min(point + step_size);
-                    self.state.communication.move_to_time_of_clock(reached);
+                    let tick_time = clock.next_time();
+                    let reached = tick_time.max(point).min(point + step_size);
+                    self.state.communication.move_to_time_of_clock(reached, tick_time);
                 } else {
                     self.state.communication.take_step(point, 0.0, 0.0);
                 }

@@ -224,3 +224,48 @@ fn ticks_of_imprecise_steps_may_be_activated() {
         }
     }
 }
+
+/// Guards: ticks that ran a step early from the 30 000th on, for each gap was less than the last digit of the time; and a
+/// refusal at 0, where the tolerance was that of the time.
+#[test]
+fn counted_steps_of_some_digits_keep_their_ticks() {
+    let steps_of_a_tick = 6;
+    let h = 1e-4 / f64::from(steps_of_a_tick);
+    let [ten_digits, eight_digits] =
+        [format!("{h:.9e}"), format!("{h:.7e}")].map(|text| text.parse::<f64>().unwrap());
+    for (start, step_size) in [(-0.02, ten_digits), (5000.0, eight_digits)] {
+        for standard in BOTH {
+            let component = Component::with_logging(standard, "LevitatedBallController", false);
+            assert_eq!(component.set("sample_time", 1e-4), OK);
+            component.initialise(start);
+            let tick_time = [component.reference("tick_time")];
+            let mut value = [0.0];
+            for k in 0..100_000 {
+                assert_eq!(component.step(start + f64::from(k) * h, step_size), OK, "{start} {k}");
+                assert_eq!(component.get_reals(&tick_time, &mut value), OK);
+                let expected = start + f64::from(k / steps_of_a_tick) * 1e-4;
+                assert!((value[0] - expected).abs() < 1e-8, "{start} {k}: {} {expected}", value[0]);
+            }
+        }
+    }
+}
+
+/// Guards: a first step of 1e6 s that began 8.5 sample times late, for its billionth is more.
+#[test]
+fn the_gap_before_a_step_that_ends_at_a_tick_is_measured_by_the_step_before() {
+    for model in sampled_models() {
+        let choices = Choices { event_mode: true, early_return: true, intermediate_update: None };
+        let component = Component::co_simulation(model, choices);
+        component.initialise(1e6);
+        component.settle_event();
+        assert_eq!(component.enter_step_mode(), OK);
+        let period = component.get("sample_time");
+        component.recorder.clear();
+        let late = component.step_to_event(1e6 + 0.5 * period, 1e6);
+        component.assert_refused(late.status, &["does not follow the last one"]);
+        let step = component.step_to_event(1e6, 1e6);
+        assert_eq!((step.status, step.is_early), (OK, true));
+        let late = component.step_to_event(step.reached + 1e-3 * period, 1e6);
+        component.assert_refused(late.status, &["does not follow the last one"]);
+    }
+}
