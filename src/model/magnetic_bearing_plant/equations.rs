@@ -118,8 +118,14 @@ impl PlantEquations<COUNT, 3, 1> for MagneticBearingEquations {
     /// The side of zero that the flux is on.
     #[inline]
     fn transition(_: &[f64; COUNT], motion: Motion<FluxSign, 3>, _: [f64; 1]) -> Motion<FluxSign, 3> {
-        let indicator = flux_sign_indicator(motion.state[2], motion.mode);
-        let is_positive = if motion.mode == FluxSign::Positive { indicator > 0.0 } else { indicator >= 0.0 };
+        let flux = motion.state[2];
+        let is_positive = if flux.abs() > 2.0 * HYSTERESIS * MAGNETIC_FLUX.nominal {
+            // Beyond the hysteresis, without a division.
+            flux > 0.0
+        } else {
+            let indicator = flux_sign_indicator(flux, motion.mode);
+            if motion.mode == FluxSign::Positive { indicator > 0.0 } else { indicator >= 0.0 }
+        };
         Motion { mode: if is_positive { FluxSign::Positive } else { FluxSign::Negative }, ..motion }
     }
 

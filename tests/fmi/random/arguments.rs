@@ -234,9 +234,9 @@ fn step(model: &Model, point: f64, size: f64) -> Arguments {
     if !(size.is_finite() && size > 0.0 && point.is_finite() && end.is_finite()) {
         return Wrong;
     }
-    // A few units in the last place, or as many of the step as rounding may make of it.
-    let rounding = 1e-13 * point.abs().max(model.time.abs()).max(size);
-    if (point - model.time).abs() > rounding.max(2e-9 * size) { Wrong } else { Open }
+    // A few units in the last place, or as many of the step before as rounding may make of it.
+    let rounding = 1e-13 * point.abs().max(model.time.abs());
+    if (point - model.time).abs() > rounding.max(2e-9 * model.last_step) { Wrong } else { Open }
 }
 
 fn is_clock(description: &ModelDescription, reference: u32) -> bool {

@@ -22,6 +22,8 @@ pub struct Model {
     pub time: f64,
     /// By how much the sum of the steps so far may be off by rounding \[s\].
     pub drift: f64,
+    /// Length of the last step \[s\], 0 before the first.
+    pub last_step: f64,
     /// Times of the last EnterEventMode and of the last two CompletedIntegratorStep.
     pub last_event: f64,
     pub completed: [f64; 2],
@@ -52,6 +54,7 @@ impl Model {
             stop: None,
             time: 0.0,
             drift: 0.0,
+            last_step: 0.0,
             last_event: f64::NEG_INFINITY,
             completed: [f64::NEG_INFINITY; 2],
             has_set: false,
@@ -104,6 +107,8 @@ impl Model {
             }
             Call::SetTime(time) => self.time = *time,
             Call::Step { point, is_final, .. } => {
+                let way = answer.reached - point;
+                self.last_step = if way > 0.0 { way } else { self.last_step };
                 self.time = answer.reached;
                 self.has_set = false;
                 self.has_event = answer.is_event;
@@ -151,6 +156,7 @@ impl Model {
         self.stop = experiment.stop;
         self.time = experiment.start;
         self.drift = 0.0;
+        self.last_step = 0.0;
     }
 
     fn follow_plain(&mut self, function: &str, choices: &Choices, initial_sample_time: f64) {
