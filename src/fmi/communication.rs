@@ -1,7 +1,7 @@
 //! Communication points: whether a step follows the one before, how much time really passes, and where time ends.
 
 use super::CallError;
-use super::time_rounding::{ROUNDING, TimeRounding};
+use super::time_rounding::{IGNORED, TimeRounding};
 use serde::{Deserialize, Serialize};
 
 /// The point the simulation has reached, and the one it must not pass.
@@ -42,7 +42,7 @@ impl CommunicationPoint {
         let end = point + step_size;
         // Nearly every step. An end that is finite was reached from finite numbers, and no comparison holds of what is none.
         let is_ordinary = step_size > 0.0 && end <= self.stop_time && end < f64::INFINITY;
-        if is_ordinary && self.rounding.is_ignored(point - self.now, ROUNDING * self.now.abs()) {
+        if is_ordinary && self.rounding.is_ignored(point - self.now, IGNORED * self.now.abs()) {
             return Ok(step_size);
         }
         self.duration_in_full(point, step_size)
@@ -79,6 +79,11 @@ impl CommunicationPoint {
         let passes = self.rounding.duration(point - self.now, step_size, largest_time);
         let passes = passes.ok_or(CallError::TimeDoesNotFollow { got: point, expected: self.now })?;
         let argument = "currentCommunicationPoint + communicationStepSize";
+        if point >= self.stop_time {
+            // All of the step is past it, be it as short as rounding.
+            let (time, stop_time) = (point + step_size, self.stop_time);
+            return Err(CallError::PastStopTime { argument, time, stop_time });
+        }
         self.require_before_stop_time(argument, point + step_size, step_size)?;
         Ok(passes)
     }

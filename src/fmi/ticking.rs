@@ -64,9 +64,8 @@ impl Instance {
                 clock.pass(wait);
                 if wait > 0.0 {
                     // The importer's time may be off by rounding; a step never goes back nor beyond its end.
-                    let tick_time = clock.next_time();
-                    let reached = tick_time.max(point).min(point + step_size);
-                    self.state.communication.move_to_time_of_clock(reached, tick_time);
+                    let reached = clock.next_time().max(point).min(point + step_size);
+                    self.state.communication.move_to_time_of_clock(reached, clock.time());
                 } else {
                     self.state.communication.take_step(point, 0.0, 0.0);
                 }

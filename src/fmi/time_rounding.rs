@@ -5,6 +5,9 @@ use serde::{Deserialize, Serialize};
 /// Rounding of a time, in units in the last place.
 pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
+/// Rounding that gaps may come to and be ignored, in units in the last place: less than a clock takes for a tick's time.
+pub(super) const IGNORED: f64 = 4.0 * f64::EPSILON;
+
 /// Half a unit in the last place of 1.
 const HALF_A_UNIT: f64 = 0.5 * f64::EPSILON;
 
@@ -60,15 +63,15 @@ impl TimeRounding {
     /// at times of up to `largest_time` \[s\].
     ///
     /// Gaps are ignored as long as they come to a few units in the last place of the time, or undo what times have rounded
-    /// by. Beyond that they pass with the step, so that the model's time is the importer's. A gap of more than a billionth of
-    /// the last step, and of a few units in the last place, is no rounding: `None`.
+    /// by. Beyond that they pass with the step, so that the model's time is the importer's, or with a later one that is long
+    /// enough. A gap of more than a billionth of the last step, and of some units in the last place, is no rounding: `None`.
     pub fn duration(&self, gap: f64, step_size: f64, largest_time: f64) -> Option<f64> {
-        let rounding = ROUNDING * largest_time;
         let gaps = self.gaps + gap;
         let passes = step_size + (gaps + self.rounded);
-        if gap.abs() <= rounding && self.is_rounding(gaps, rounding) {
+        let is_close = gap.abs() <= ROUNDING * largest_time;
+        if is_close && (passes <= 0.0 || self.is_rounding(gaps, IGNORED * largest_time)) {
             Some(step_size)
-        } else if gap.abs() <= rounding.max(TOLERANCE * self.last_step) && passes > 0.0 {
+        } else if passes > 0.0 && (is_close || gap.abs() <= TOLERANCE * self.last_step) {
             Some(passes)
         } else {
             None
@@ -84,10 +87,10 @@ impl TimeRounding {
     /// in s.
     #[inline]
     pub fn begin_step(&mut self, gap: f64, begin: f64, step_size: f64, duration: f64) {
-        if duration == step_size {
-            self.gaps += gap;
-        } else {
-            (self.gaps, self.rounded) = (0.0, 0.0);
+        self.gaps += gap;
+        if duration != step_size {
+            self.gaps += self.rounded + (step_size - duration);
+            self.rounded = 0.0;
         }
         // Two-sum of Knuth: what the end differs by from the sum of two numbers, exactly.
         let end = begin + step_size;

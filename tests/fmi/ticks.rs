@@ -269,3 +269,57 @@ fn the_gap_before_a_step_that_ends_at_a_tick_is_measured_by_the_step_before() {
         component.assert_refused(late.status, &["does not follow the last one"]);
     }
 }
+
+/// Guards: a step without any gap that was refused, for the step before had ended at a tick a little behind it.
+#[test]
+fn steps_that_follow_exactly_are_taken_at_any_time() {
+    for (period, step_size) in [(0.01, 1.1e-5), (1e-3, 7e-6)] {
+        let choices = Choices { event_mode: true, early_return: true, intermediate_update: None };
+        let component = Component::co_simulation("MaglevRigController", choices);
+        assert_eq!(component.set("sample_time", period), OK);
+        component.initialise(1.7e9);
+        component.settle_event();
+        assert_eq!(component.enter_step_mode(), OK);
+        let mut time = 1.7e9;
+        for k in 0..10_000 {
+            let step = component.step_to_event(time, step_size);
+            assert_eq!(step.status, OK, "{period} {k}: {:?}", component.recorder.messages().last());
+            time = step.reached;
+            if step.is_event {
+                assert_eq!(component.enter_event_mode(), OK);
+                component.settle_event();
+                assert_eq!(component.enter_step_mode(), OK);
+                component.recorder.clear();
+            }
+        }
+    }
+}
+
+/// Guards: gaps that were made up for in one step, which was then longer than the longest, and ticks that ran early where a
+/// few units in the last place of the time are more than a clock takes for a tick's.
+#[test]
+fn gaps_that_are_made_up_for_hurt_no_limit() {
+    for (start, denominator, digits, sample_time) in
+        [(1e4, 900.0, 9, 1e-3), (1e8, 6000.0, 6, 1e-3), (0.0, 3000.0, 9, 1e-3), (1e5, 6e6, 7, 1e-6)]
+    {
+        let h: f64 = format!("{:.digits$e}", 1.0 / denominator).parse().unwrap();
+        let component = Component::with_logging(Standard::Fmi2, "MaglevRigController", false);
+        assert_eq!(component.set("sample_time", sample_time), OK);
+        assert_eq!(component.set("longest_step", h.max(1e-6)), OK);
+        component.initialise(start);
+        for k in 0..200_000 {
+            let time = start + f64::from(k) / denominator;
+            assert_eq!(
+                component.step(time, h),
+                OK,
+                "{start} {k}: {:?}",
+                component.recorder.messages().last()
+            );
+            let ahead = component.get("tick_time") - time;
+            let bound = 1e-4 * sample_time + 8.0 * f64::EPSILON * start;
+            // Every tick lies at the begin of a step, but for steps that are longer than a sample time.
+            let is_in_time = ahead <= bound || h > sample_time;
+            assert!(is_in_time && ahead > -sample_time - bound, "{start} {k}: {ahead}");
+        }
+    }
+}

@@ -187,7 +187,8 @@ impl Oracle<'_> {
                 return Rule::Forbidden("past the stop time");
             }
             Call::Step { point, size, .. } => {
-                if model.is_past_stop(point + size, *size) {
+                let begins_there = model.stop.is_some_and(|stop| *point >= stop && point + size > stop);
+                if begins_there || model.is_past_stop(point + size, *size) {
                     return Rule::Forbidden("past the stop time");
                 }
                 if model.stop.is_some_and(|stop| point + size > stop) {
