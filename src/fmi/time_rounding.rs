@@ -5,14 +5,18 @@ use serde::{Deserialize, Serialize};
 /// Rounding of a time, in units in the last place.
 pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// Rounding that gaps may come to and be ignored, in units in the last place: less than a clock takes for a tick's time.
-pub(super) const IGNORED: f64 = 4.0 * f64::EPSILON;
+/// Rounding that gaps may come to and be ignored, in units in the last place: times that are counted round by less, and what
+/// is made up for in one step stays within what a clock takes for a tick's time and a longest step for its own.
+pub(super) const IGNORED: f64 = 2.0 * f64::EPSILON;
 
 /// Half a unit in the last place of 1.
 const HALF_A_UNIT: f64 = 0.5 * f64::EPSILON;
 
 /// Share of a step by which the point that it leads to may be named differently, and its end miss the stop time, by rounding.
 const TOLERANCE: f64 = 1e-9;
+
+/// Share of a step that the gap before it may come to at most, however long the step before: it is rounding to both.
+const LARGEST_SHARE: f64 = 1e-6;
 
 /// Share of a step by which its end may miss the stop time at most, however many steps went before: no step is taken for
 /// rounding. Ten million steps of one size round by less.
@@ -64,14 +68,16 @@ impl TimeRounding {
     ///
     /// Gaps are ignored as long as they come to a few units in the last place of the time, or undo what times have rounded
     /// by. Beyond that they pass with the step, so that the model's time is the importer's, or with a later one that is long
-    /// enough. A gap of more than a billionth of the last step, and of some units in the last place, is no rounding: `None`.
+    /// enough. A gap of more than a billionth of the last step or a millionth of this one, and of some units in the last
+    /// place, is no rounding: `None`.
     pub fn duration(&self, gap: f64, step_size: f64, largest_time: f64) -> Option<f64> {
         let gaps = self.gaps + gap;
         let passes = step_size + (gaps + self.rounded);
         let is_close = gap.abs() <= ROUNDING * largest_time;
+        let tolerance = (TOLERANCE * self.last_step).min(LARGEST_SHARE * step_size);
         if is_close && (passes <= 0.0 || self.is_rounding(gaps, IGNORED * largest_time)) {
             Some(step_size)
-        } else if passes > 0.0 && (is_close || gap.abs() <= TOLERANCE * self.last_step) {
+        } else if passes > 0.0 && (is_close || gap.abs() <= tolerance) {
             Some(passes)
         } else {
             None
@@ -158,7 +164,8 @@ mod tests {
     }
 
     proptest! {
-        /// Bits depend on it: importers that count their steps and such that add them up let the same time pass.
+        /// Bits depend on it: importers that count their steps, in either way, and such that add them up let the same time
+        /// pass.
         #[test]
         fn rounding_of_honest_importers_changes_no_step(
             exponent in -3.0..9.0f64, step_exponent in -5.0..-1.0f64, steps in 1000u32..20_000,
@@ -166,6 +173,9 @@ mod tests {
             let (start, h) = (10f64.powf(exponent), 10f64.powf(step_exponent));
             let (counted, _) = passed(start, steps, h, |k| start + f64::from(k) * h);
             prop_assert!(counted.iter().all(|duration| *duration == h));
+            let divisor = libm::ceil(1.0 / h);
+            let (divided, _) = passed(start, steps, 1.0 / divisor, |k| start + f64::from(k) / divisor);
+            prop_assert!(divided.iter().all(|duration| *duration == 1.0 / divisor));
             let mut times = vec![start];
             (1..steps as usize).for_each(|k| times.push(times[k - 1] + h));
             let (added_up, _) = passed(start, steps, h, |k| times[k as usize]);

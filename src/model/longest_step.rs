@@ -13,7 +13,7 @@ const ROUNDING: f64 = 1e-8;
 
 /// Units in the last place of a time by which a step may be off that is the difference of two times, or that makes up for
 /// gaps between steps which were ignored as rounding.
-const ROUNDING_OF_TIMES: f64 = 24.0;
+const ROUNDING_OF_TIMES: f64 = 4.0;
 
 /// Name of the row.
 pub const NAME: &str = "longest_step";
@@ -60,7 +60,7 @@ mod tests {
             let end = start + (f64::from(place) + 1.0) * limit;
             prop_assert_eq!(check_step(time, end - time, limit), Ok(()));
             prop_assert_eq!(check_step(time, (time + limit) - time, limit), Ok(()));
-            let duration = 1.01 * limit;
+            let duration = 1.001 * limit;
             prop_assert_eq!(check_step(time, duration, limit), Err(ModelError::BeyondLongestStep { duration, limit }));
         }
     }

@@ -19,6 +19,7 @@ mod fitting_parameters;
 #[cfg(target_arch = "x86_64")]
 mod floating_point;
 mod harness;
+mod imprecise_steps;
 mod input_slopes;
 mod instantiation;
 mod intermediate_update;

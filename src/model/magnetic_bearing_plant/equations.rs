@@ -134,3 +134,25 @@ impl PlantEquations<COUNT, 3, 1> for MagneticBearingEquations {
         Self::transition(values, motion, [0.0])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The side on which a flux lies without a division is the one that its indicator names.
+    #[test]
+    fn the_side_of_a_flux_is_that_of_its_indicator() {
+        let shares =
+            [0.0, 1e-300, 0.5, 1.0 - 1e-15, 1.0, 1.0 + 1e-15, 2.0 - 1e-15, 2.0, 2.0 + 1e-15, 3.0, 1e9, 1e300];
+        for share in shares.into_iter().flat_map(|share| [share, -share]) {
+            let flux = share * HYSTERESIS * MAGNETIC_FLUX.nominal;
+            for mode in [FluxSign::Positive, FluxSign::Negative] {
+                let indicator = flux_sign_indicator(flux, mode);
+                let is_positive = indicator > 0.0 || (indicator == 0.0 && mode == FluxSign::Negative);
+                let motion = Motion { state: [0.0, 0.0, flux], mode };
+                let after = MagneticBearingEquations::transition(&[0.0; COUNT], motion, [0.0]).mode;
+                assert_eq!(after == FluxSign::Positive, is_positive, "{share} {mode:?}");
+            }
+        }
+    }
+}

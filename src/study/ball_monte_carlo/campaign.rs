@@ -12,9 +12,24 @@ use crate::study::{Progress, StudyError};
 
 pub const REFERENCES: [BallReference; 2] = [Sinusoids, Steps];
 
-/// Outcomes by `[spread][reference][candidate][run]`.
+/// Outcomes by `[spread][reference][candidate][run]`, and what they come to by `[spread][reference][candidate]`.
 pub struct Campaign {
     pub outcomes: Vec<Vec<Vec<Vec<Outcome>>>>,
+    errors: Vec<Vec<Vec<Errors>>>,
+}
+
+/// What the runs of a candidate come to.
+pub struct Errors {
+    /// rms |y - y*| \[m\]
+    pub position: Median,
+    /// rms flux error, share of lam0
+    pub flux: Median,
+}
+
+/// Median over all runs, lost ones counting as infinite, and where that of all possible runs lies.
+pub struct Median {
+    pub value: f64,
+    pub interval: Interval,
 }
 
 impl Campaign {
@@ -43,7 +58,7 @@ impl Campaign {
             trial::run(packages, &fields[field][who], REFERENCES[reference], &draw)
         })?;
         let mut outcomes = outcomes.into_iter();
-        let outcomes = SPREADS
+        let outcomes: Vec<Vec<Vec<Vec<Outcome>>>> = SPREADS
             .iter()
             .map(|spread| {
                 let mut runs = || outcomes.by_ref().take(spread.runs.min(cap) as usize).collect();
@@ -51,7 +66,9 @@ impl Campaign {
                 REFERENCES.iter().map(|_| by_candidate()).collect()
             })
             .collect();
-        Ok(Self { outcomes })
+        let by_candidate = |field: &Vec<Vec<Outcome>>| field.iter().map(|runs| Errors::of(runs)).collect();
+        let errors = outcomes.iter().map(|spread| spread.iter().map(by_candidate).collect()).collect();
+        Ok(Self { outcomes, errors })
     }
 
     /// Number of runs of a spread on a reference.
@@ -64,19 +81,24 @@ impl Campaign {
         &self.outcomes[spread][reference][who]
     }
 
+    /// What the runs of a candidate come to.
+    pub fn errors(&self, spread: usize, reference: usize, who: usize) -> &Errors {
+        &self.errors[spread][reference][who]
+    }
+
     /// Number of survivors.
     pub fn survivors(&self, spread: usize, reference: usize, who: usize) -> usize {
         self.of(spread, reference, who).iter().filter(|outcome| outcome.survived()).count()
     }
 }
 
-/// Median over all runs, lost ones counting as infinite.
-pub fn median(outcomes: &[Outcome], value: impl Fn(&Outcome) -> f64) -> f64 {
-    metrics::median(outcomes.iter().map(value))
-}
-
-/// Where the [`median`] of all possible runs lies, by bootstrap.
-pub fn median_interval(outcomes: &[Outcome], value: impl Fn(&Outcome) -> f64) -> Interval {
-    let values: Vec<f64> = outcomes.iter().map(value).collect();
-    bootstrap(&values, |sample| metrics::median(sample))
+impl Errors {
+    fn of(runs: &[Outcome]) -> Self {
+        let median = |value: fn(&Outcome) -> f64| {
+            let values: Vec<f64> = runs.iter().map(value).collect();
+            let interval = bootstrap(&values, |sample| metrics::median(sample));
+            Median { value: metrics::median(values), interval }
+        };
+        Self { position: median(Outcome::position), flux: median(Outcome::flux) }
+    }
 }

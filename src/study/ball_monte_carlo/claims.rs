@@ -1,6 +1,6 @@
 //! What is claimed of the estimators under spread parameters and noise, and what to choose.
 
-use super::campaign::{Campaign, REFERENCES, median, median_interval};
+use super::campaign::{Campaign, Median, REFERENCES};
 use super::candidate::{ADAPTIVE_OFFSET, ADAPTIVE_RESISTANCE, DREM, FROZEN, NEWTON, ObserverCandidate};
 use super::spread::{Draw, SPREADS};
 use super::trial::Outcome;
@@ -54,10 +54,9 @@ fn adaptive_survives(campaign: &Campaign) -> Claim {
 }
 
 fn adaptive_is_accurate(campaign: &Campaign) -> Claim {
-    let value =
-        |who: usize, of: fn(&Outcome) -> f64| both(|reference| median(campaign.of(A, reference, who), of));
-    let position = value(ADAPTIVE_RESISTANCE, Outcome::position).map(|error| 1e3 * error);
-    let flux = value(ADAPTIVE_RESISTANCE, Outcome::flux);
+    let errors = |reference| campaign.errors(A, reference, ADAPTIVE_RESISTANCE);
+    let position = both(|reference| 1e3 * errors(reference).position.value);
+    let flux = both(|reference| errors(reference).flux.value);
     Claim::new("adaptive_newton_is_accurate", BEYOND)
         .stating("It follows the sinusoids within 0.06 mm and the steps within 0.04 mm.")
         .measured_each(on_both("median rms |y - y*|", position), "mm")
@@ -115,8 +114,9 @@ pub fn tables(tuning: &Tuning, candidates: &[ObserverCandidate], campaign: &Camp
                 for reference in 0..REFERENCES.len() {
                     let outcomes = campaign.of(spread, reference, who);
                     row.push(format!("{} of {}", campaign.survivors(spread, reference, who), outcomes.len()));
-                    row.push(median_with_interval(outcomes, Outcome::position, 1e3, "mm"));
-                    row.push(median_with_interval(outcomes, Outcome::flux, 100.0, "%"));
+                    let errors = campaign.errors(spread, reference, who);
+                    row.push(with_interval(&errors.position, 1e3, "mm"));
+                    row.push(with_interval(&errors.flux, 100.0, "%"));
                 }
                 row.push(cause(campaign, spread, who));
                 row
@@ -151,13 +151,13 @@ fn finite(value: f64, unit: &str) -> String {
     if value.is_finite() { quantity(value, unit) } else { "most are lost".to_owned() }
 }
 
-/// The median times `factor` in `unit` and the interval it lies in.
-fn median_with_interval(outcomes: &[Outcome], value: fn(&Outcome) -> f64, factor: f64, unit: &str) -> String {
-    let middle = factor * median(outcomes, value);
+/// A median times `factor` in `unit` and the interval it lies in.
+fn with_interval(median: &Median, factor: f64, unit: &str) -> String {
+    let middle = factor * median.value;
     if !middle.is_finite() {
         return finite(middle, unit);
     }
-    let Interval { low, high } = median_interval(outcomes, value);
+    let Interval { low, high } = median.interval;
     let [middle, low] = [(middle, unit), (factor * low, "1")].map(|(value, unit)| quantity(value, unit));
     if high.is_finite() {
         format!("{middle} ({low} to {})", quantity(factor * high, "1"))
@@ -242,7 +242,7 @@ pub fn advice(tuning: &Tuning, candidates: &[ObserverCandidate], campaign: &Camp
             .sum()
     };
     let error = |spread: usize, who: usize| -> f64 {
-        largest(both(|reference| median(campaign.of(spread, reference, who), Outcome::position)))
+        largest(both(|reference| campaign.errors(spread, reference, who).position.value))
     };
     let choices: Vec<String> = SPREADS
         .iter()

@@ -1,6 +1,6 @@
 //! Distributions of the errors, what was lost, and DREM's tuning.
 
-use super::campaign::{Campaign, REFERENCES, median, median_interval};
+use super::campaign::{Campaign, Errors, Median, REFERENCES};
 use super::candidate::{ADAPTIVE_OFFSET, ADAPTIVE_RESISTANCE, NEWTON, ObserverCandidate};
 use super::spread::{Draw, SPREADS};
 use super::trial::Outcome;
@@ -47,7 +47,7 @@ fn distributions(
     caption: &str,
     candidates: &[ObserverCandidate],
     campaign: &Campaign,
-    (label, factor, value): (&str, f64, RunError),
+    (label, factor, value): (&str, f64, fn(&Outcome) -> f64),
 ) -> FigureWithData {
     let mut panels = Vec::new();
     for (reference, signal) in REFERENCES.iter().enumerate() {
@@ -80,9 +80,6 @@ fn capitalised(text: &str) -> String {
 
 /// What one run's draw says of one parameter.
 type Part = fn(&Draw) -> f64;
-
-/// One of a run's errors.
-type RunError = fn(&Outcome) -> f64;
 
 /// A row per run.
 fn data(candidates: &[ObserverCandidate], campaign: &Campaign) -> Table {
@@ -142,14 +139,13 @@ fn medians(candidates: &[ObserverCandidate], campaign: &Campaign) -> Table {
         add(format!("{name}: survivors [1]"), &|spread, reference| {
             campaign.survivors(spread, reference, who) as f64
         });
-        let errors: [(&str, &str, RunError); 2] =
-            [("position", "m", Outcome::position), ("flux", "1", Outcome::flux)];
-        for (what, unit, error) in errors {
+        let of_position: fn(&Errors) -> &Median = |errors| &errors.position;
+        for (what, unit, of) in [("position", "m", of_position), ("flux", "1", |errors| &errors.flux)] {
             let header = |part: &str| format!("{name}: {part}median rms {what} error [{unit}]");
-            add(header(""), &|spread, reference| median(campaign.of(spread, reference, who), error));
-            let interval = |spread, reference| median_interval(campaign.of(spread, reference, who), error);
-            add(header("low end of the "), &|spread, reference| interval(spread, reference).low);
-            add(header("high end of the "), &|spread, reference| interval(spread, reference).high);
+            let median = |spread, reference| of(campaign.errors(spread, reference, who));
+            add(header(""), &|spread, reference| median(spread, reference).value);
+            add(header("low end of the "), &|spread, reference| median(spread, reference).interval.low);
+            add(header("high end of the "), &|spread, reference| median(spread, reference).interval.high);
         }
     }
     table
