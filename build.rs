@@ -8,11 +8,8 @@ const NO_COMMIT: &str = "315532800";
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
-    // The shared library alone does not know the time, and need not be built again after each commit.
-    if std::env::var_os("CARGO_FEATURE_TOOLS").is_some() {
-        let time = commit_time().unwrap_or_else(|| NO_COMMIT.to_owned());
-        println!("cargo::rustc-env=MAGLEV_FMU_COMMIT_TIME={time}");
-    }
+    let time = commit_time().unwrap_or_else(|| NO_COMMIT.to_owned());
+    println!("cargo::rustc-env=MAGLEV_FMU_COMMIT_TIME={time}");
 }
 
 /// Seconds since 1970 of the commit that is checked out; `None` without git, or if a repository around this

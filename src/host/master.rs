@@ -4,7 +4,7 @@ use super::error::{HostError, Result};
 use super::instance::Instance;
 use super::route::Route;
 use super::trace::{Probe, Trace};
-use crate::exchange_order::ExchangeOrder;
+use maglev_models::ExchangeOrder;
 
 /// A controller and a plant that step together at the communication points `start + k * step_size`.
 ///

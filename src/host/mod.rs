@@ -41,7 +41,6 @@ mod trace;
 mod value;
 mod variable;
 
-pub use crate::exchange_order::ExchangeOrder;
 pub use crate::fmi::FmiVersion;
 pub use archive::Archive;
 pub use description::{CoSimulation, DefaultExperiment, EnumerationItem, ModelDescription};
@@ -49,6 +48,7 @@ pub use error::{HostError, ReportedStatus, Result};
 pub use fmu::Fmu;
 pub use instance::{Instance, Logging};
 pub use limits::Limits;
+pub use maglev_models::ExchangeOrder;
 pub use master::ControlLoop;
 pub use message_log::LogMessage;
 pub use saved_state::SavedState;

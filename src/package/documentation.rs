@@ -6,6 +6,7 @@ use quick_xml::escape::escape;
 
 use super::loop_diagram::diagram_name;
 use super::model_description::enumerations;
+use super::registration::paragraphs;
 use super::related_files::{DIRECTORY, INPUT, OUTPUT};
 use super::run_figure::RUN_FIGURE;
 use super::terminal::Terminal;
@@ -32,7 +33,7 @@ pub fn documentation(
 ) -> String {
     let name = description.name;
     let summary = escape(description.summary);
-    let paragraphs = lines(description.documentation.iter().map(|text| format!("<p>{}</p>", escape(*text))));
+    let paragraphs = lines(paragraphs(description).iter().map(|text| format!("<p>{}</p>", escape(text))));
     let variables = lines(description.variables.iter().enumerate().map(|(reference, variable)| {
         row([
             code(variable.name),

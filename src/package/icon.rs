@@ -3,16 +3,16 @@
 use resvg::{tiny_skia, usvg};
 
 use super::PackageError;
+use super::registration::registration;
 use crate::causes::with_causes;
-use crate::model::{Description, Registration};
+use crate::model::Description;
 
 /// Width and height of the picture \[pixel\].
 const SIZE: u32 = 200;
 
 /// The icon as a drawing in SVG.
 pub fn icon_svg(description: &Description) -> Result<&'static str, PackageError> {
-    let registration = Registration::find(description);
-    registration.map(|model| model.icon).ok_or(PackageError::NoIcon { model: description.name })
+    registration(description).map(|model| model.icon).ok_or(PackageError::NoIcon { model: description.name })
 }
 
 /// The icon as a PNG file, 200 by 200 pixels.

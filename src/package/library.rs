@@ -12,9 +12,6 @@ use crate::file;
 use crate::fmi::function_names;
 use crate::model::{Edition, MODELS, Token, editions_of};
 
-/// Name of the library target, which differs from the package's in the dash.
-const LIBRARY_NAME: &str = "maglev_fmu";
-
 /// More than any build of the library, with all that debuggers want to know \[byte\].
 const LARGEST: u64 = 256 << 20;
 
@@ -119,7 +116,8 @@ fn texts_like_tokens(bytes: &[u8]) -> HashSet<&[u8]> {
 /// The library in the program's directory, where `cargo build` and an installation put it, or in `deps` below,
 /// where `cargo run` leaves it: the one that was built last, `deps` if they are equally old.
 fn newest_library(directory: &Path) -> Result<PathBuf, PackageError> {
-    let name = format!("{}{LIBRARY_NAME}{}", env::consts::DLL_PREFIX, env::consts::DLL_SUFFIX);
+    let name =
+        format!("{}{}{}", env::consts::DLL_PREFIX, maglev_models::LIBRARY_NAME, env::consts::DLL_SUFFIX);
     let looked_at = [directory.join(&name), directory.join("deps").join(&name)];
     let built_at = |path: &PathBuf| fs::metadata(path).and_then(|metadata| metadata.modified()).ok();
     looked_at
@@ -142,7 +140,8 @@ mod tests {
         let error = newest_library(directory.path()).unwrap_err().to_string();
         assert!(error.contains("deps") && error.contains("--library"), "{error}");
 
-        let name = format!("{}{LIBRARY_NAME}{}", env::consts::DLL_PREFIX, env::consts::DLL_SUFFIX);
+        let name =
+            format!("{}{}{}", env::consts::DLL_PREFIX, maglev_models::LIBRARY_NAME, env::consts::DLL_SUFFIX);
         let (installed, built) = (directory.path().join(&name), directory.path().join("deps").join(&name));
         fs::create_dir(built.parent().unwrap()).unwrap();
         let time = SystemTime::UNIX_EPOCH + Duration::from_secs(1_000_000_000);

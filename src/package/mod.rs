@@ -21,6 +21,7 @@ mod model_description;
 mod model_page;
 mod platform;
 mod reference_run;
+mod registration;
 mod related_files;
 mod run_figure;
 mod system_structure;
@@ -43,6 +44,7 @@ pub use library::Library;
 pub use model_description::model_description;
 pub use platform::Platform;
 pub use reference_run::{ReferenceRun, Table};
+pub use registration::dependencies;
 pub use related_files::{DIRECTORY as RELATED_FILES, INPUT as REFERENCE_INPUT, OUTPUT as REFERENCE_OUTPUT};
 pub use third_party::{PATH as THIRD_PARTY_PATH, ThirdPartyError, third_party};
 

@@ -7,6 +7,7 @@
 //! Some importers set the first row of inputs before the end of the initialisation, some after it. The run is the same
 //! either way: an input that an output at the start follows from keeps its start value over the first step.
 
+use super::dependencies;
 use crate::model::system::{System, systems};
 use crate::model::variable::{Causality, Kind, Variable};
 use crate::model::{
@@ -229,7 +230,7 @@ fn initial_inputs(description: &'static Description) -> Vec<usize> {
     if !description.is_sampled() {
         return Vec::new();
     }
-    let rows = description.variables.iter().zip(description.dependencies());
+    let rows = description.variables.iter().zip(dependencies(description));
     let outputs = rows.filter(|(variable, _)| variable.causality == Causality::Output);
     let sources = outputs.flat_map(|(_, dependencies)| dependencies.initially);
     sources.filter(|source| description.variables[*source].causality == Causality::Input).collect()

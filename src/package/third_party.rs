@@ -8,11 +8,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use cargo_metadata::{CargoOpt, DependencyKind, Metadata, MetadataCommand, Package, PackageId, TargetKind};
+use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package, PackageId, TargetKind};
 use spdx::Expression;
 use thiserror::Error;
 
 use super::licenses;
+
+/// Place of the manifest of the library in the repository.
+const LIBRARY_MANIFEST: &str = "models/Cargo.toml";
 
 /// Place of the file in the repository.
 pub const PATH: &str = "assets/licenses/THIRD-PARTY.txt";
@@ -91,8 +94,7 @@ impl Crate<'_> {
 /// Contents of the file for the sources below `root`, with the versions that `Cargo.lock` names.
 pub fn third_party(root: &Path) -> Result<String, ThirdPartyError> {
     let metadata = MetadataCommand::new()
-        .manifest_path(root.join("Cargo.toml"))
-        .features(CargoOpt::NoDefaultFeatures)
+        .manifest_path(root.join(LIBRARY_MANIFEST))
         .other_options(["--locked".to_owned()])
         .exec()?;
     let mut rows = Vec::new();
@@ -118,13 +120,18 @@ pub fn third_party(root: &Path) -> Result<String, ThirdPartyError> {
     Ok(document(&rows, &texts))
 }
 
-/// The packages that the library is linked with, by name: normal dependencies of the root without features, and theirs.
+/// The packages that the library is linked with, by name: normal dependencies of the models, but for optional ones, and
+/// theirs.
 /// Procedural macros run in the compiler only.
 fn linked_packages(metadata: &Metadata) -> Result<Vec<&Package>, ThirdPartyError> {
     let resolve = metadata.resolve.as_ref().ok_or(ThirdPartyError::NoRoot)?;
     let root = resolve.root.as_ref().ok_or(ThirdPartyError::NoRoot)?;
+    let optional = metadata[root].dependencies.iter().filter(|dependency| dependency.optional);
+    let optional: BTreeSet<&str> = optional.map(|dependency| dependency.name.as_str()).collect();
     let is_linked = |id: &PackageId| {
-        metadata[id].targets.iter().all(|target| !target.kind.contains(&TargetKind::ProcMacro))
+        let package = &metadata[id];
+        let is_macro = package.targets.iter().any(|target| target.kind.contains(&TargetKind::ProcMacro));
+        !is_macro && !optional.contains(package.name.as_str())
     };
     let mut found = BTreeSet::new();
     let mut open = vec![root];

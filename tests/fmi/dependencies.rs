@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use maglev_fmu::model::models;
 use maglev_fmu::model::variable::{Causality, Kind, Variability, Variable};
+use maglev_fmu::package::dependencies;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 
@@ -132,7 +133,7 @@ fn initial_values_follow_from_what_is_declared() {
             .iter()
             .flat_map(|row| {
                 let name_of = |row: usize| component.variable(row as u32).name;
-                let dependencies = component.description.dependencies().swap_remove(*row as usize);
+                let dependencies = dependencies(component.description).swap_remove(*row as usize);
                 dependencies
                     .initially
                     .into_iter()
@@ -176,7 +177,7 @@ fn declared(component: &Component, of: impl Fn(&Variable) -> bool) -> Moved {
     let unknowns = unknowns(component);
     let pairs = unknowns.iter().flat_map(|row| {
         let name_of = |row: usize| component.variable(row as u32).name;
-        let dependencies = component.description.dependencies().swap_remove(*row as usize);
+        let dependencies = dependencies(component.description).swap_remove(*row as usize);
         dependencies.at_an_instant.into_iter().map(move |(known, _)| (name_of(*row as usize), name_of(known)))
     });
     pairs.filter(|(_, known)| of(component.description.find(known).unwrap().1)).collect()

@@ -2,6 +2,7 @@
 
 use maglev_fmu::fmi::fmi2::fmi2SetRealInputDerivatives;
 use maglev_fmu::model::variable::Causality;
+use maglev_fmu::package::dependencies;
 use proptest::prelude::*;
 
 use super::differences::{assert_close, inputs, nominal, reals, slope};
@@ -50,7 +51,7 @@ proptest! {
 /// input, which may have another value by then.
 fn is_of_the_last_step(component: &Component, output: u32) -> bool {
     let description = component.description;
-    let follows = description.dependencies().swap_remove(output as usize);
+    let follows = dependencies(description).swap_remove(output as usize);
     let is_input = |row: usize| description.variables[row].causality == Causality::Input;
     let (noise, _) = description.find("sensor.noise").unwrap();
     follows.at_an_instant.iter().any(|(row, _)| is_input(*row)) || follows.initially.contains(&noise)

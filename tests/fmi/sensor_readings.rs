@@ -3,6 +3,7 @@
 
 use maglev_fmu::model::Description;
 use maglev_fmu::model::variable::{Kind, Variable};
+use maglev_fmu::package::dependencies;
 
 use super::harness::{BOTH, Component, OK, Standard, description, plants};
 
@@ -17,7 +18,7 @@ fn sensor(model: &str) -> (&'static str, &'static str) {
 /// The output that is noisy.
 fn reading(description: &Description) -> &'static Variable {
     let (noise, _) = description.find("sensor.noise").unwrap();
-    let mut rows = description.variables.iter().zip(description.dependencies());
+    let mut rows = description.variables.iter().zip(dependencies(description));
     rows.find(|(_, follows)| follows.initially.contains(&noise)).unwrap().0
 }
 

@@ -19,7 +19,7 @@ fn generated_files_are_up_to_date() {
         // A checkout may have changed the ends of lines.
         assert!(
             checked_in.replace("\r\n", "\n") == text,
-            "{} is not what src/model says: {RENEW}",
+            "{} is not what models/src/model says: {RENEW}",
             path.display()
         );
     }

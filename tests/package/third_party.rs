@@ -18,7 +18,8 @@ fn linked() -> BTreeSet<String> {
         .args([
             "tree",
             "--locked",
-            "--no-default-features",
+            "--package",
+            "maglev-models",
             "--edges",
             "normal,no-proc-macro",
             "--target",
@@ -29,7 +30,7 @@ fn linked() -> BTreeSet<String> {
         .unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let lines = String::from_utf8(output.stdout).unwrap();
-    let crates = lines.lines().filter(|line| !line.starts_with("maglev-fmu "));
+    let crates = lines.lines().filter(|line| !line.starts_with("maglev-models "));
     crates
         .map(|line| line.split_whitespace().take(2).collect::<Vec<_>>().join(" ").replace(" v", " "))
         .collect()

@@ -3,8 +3,8 @@
 use crate::model::structure::DependencyKind;
 use crate::model::variable::{Causality, Kind, Variability, Variable};
 use crate::model::{Description, Edition};
-use crate::package::Capabilities;
 use crate::package::xml::real;
+use crate::package::{Capabilities, dependencies};
 
 /// The attribute `causality`.
 pub fn causality(variable: &Variable) -> &'static str {
@@ -102,7 +102,7 @@ impl Dependencies {
 
     /// What the variable follows from at one instant after initialisation. Parameters are knowns of FMI 3.0 only.
     pub fn at_an_instant(description: &Description, reference: usize, with_parameters: bool) -> Self {
-        let dependencies = description.dependencies().swap_remove(reference).at_an_instant;
+        let dependencies = dependencies(description).swap_remove(reference).at_an_instant;
         let entries = dependencies.into_iter().filter_map(|(known, kind)| {
             let kind = match kind {
                 DependencyKind::Constant => "constant",
@@ -144,7 +144,7 @@ pub fn initial_unknowns(description: &Description) -> impl Iterator<Item = (usiz
             || row.derivative_of.is_some()
             || is_state(*index)
     });
-    let mut dependencies = description.dependencies();
+    let mut dependencies = dependencies(description);
     unknowns.map(move |(index, _)| {
         (index, Dependencies::initial(core::mem::take(&mut dependencies[index].initially)))
     })

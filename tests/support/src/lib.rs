@@ -1,11 +1,9 @@
 //! What several test programs and benches share; what one of them uses alone is a module of that program.
 
 pub mod bearing;
-#[cfg(feature = "tools")]
 mod cart;
 pub mod closed_loop;
 pub mod component;
-#[cfg(feature = "tools")]
 pub mod packages;
 pub mod printed_newton;
 pub mod rig;

@@ -68,7 +68,6 @@ variable_table! {
 
 pub static DESCRIPTION: Description = Description::new("CartController", &VARIABLES)
     .summary("PD law with a filtered derivative for a cart on a rail")
-    .documentation(&["u = kp (reference - y) - kd v, limited to the voltage limit."])
     .experiment(2e-3, 5.0);
 
 pub type CartController = SampledController<DerivativeAndLaw, COUNT>;

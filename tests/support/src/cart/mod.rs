@@ -17,11 +17,18 @@ static PLANT: ModelType = ModelType::of::<plant::CartPlant>(&plant::DESCRIPTION)
 static CONTROLLER: ModelType = ModelType::of::<controller::CartController>(&controller::DESCRIPTION);
 
 #[distributed_slice(ADDED_MODELS)]
-static PLANT_REGISTRATION: Registration = Registration::of::<plant::CartPlant>(&PLANT, ICON);
+static PLANT_REGISTRATION: Registration = Registration::of::<plant::CartPlant>(
+    &PLANT,
+    ICON,
+    "m x'' = k u - d x'. The voltage is held over a communication step or has a slope.",
+);
 
 #[distributed_slice(ADDED_MODELS)]
-static CONTROLLER_REGISTRATION: Registration =
-    Registration::of::<controller::CartController>(&CONTROLLER, ICON);
+static CONTROLLER_REGISTRATION: Registration = Registration::of::<controller::CartController>(
+    &CONTROLLER,
+    ICON,
+    "u = kp (reference - y) - kd v, limited to the voltage limit.",
+);
 
 #[distributed_slice(ADDED_SYSTEMS)]
 static SYSTEM: System = System {

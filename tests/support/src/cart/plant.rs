@@ -76,7 +76,6 @@ variable_table! {
 
 pub static DESCRIPTION: Description = Description::new("CartPlant", &VARIABLES)
     .summary("Cart on a rail, driven by a motor")
-    .documentation(&["m x'' = k u - d x'. The voltage is held over a communication step or has a slope."])
     .experiment(1e-3, 5.0);
 
 /// Longest step of the integrator \[s\], a tenth of the fastest time constant.
