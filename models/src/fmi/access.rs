@@ -69,14 +69,28 @@ impl Instance {
     }
 
     /// As [`Instance::get`] for a data type that no variable has: the first reference is refused.
-    #[cold]
-    pub(super) fn get_absent(&mut self, data_type: &DataType, references: &[u32]) -> Result<(), CallError> {
-        self.get(data_type, references, &mut [], |_| ())
+    pub(super) fn get_absent<T>(
+        &mut self,
+        data_type: &DataType,
+        references: &[u32],
+        _values: &mut [T],
+    ) -> Result<(), CallError> {
+        self.refresh_before_first_step()?;
+        self.refuse_all(data_type, references)
     }
 
     /// As [`Instance::set`] for a data type that no variable has: the first reference is refused.
+    pub(super) fn set_absent<T>(
+        &mut self,
+        data_type: &DataType,
+        references: &[u32],
+        _values: &[T],
+    ) -> Result<(), CallError> {
+        self.refuse_all(data_type, references)
+    }
+
     #[cold]
-    pub(super) fn set_absent(&mut self, data_type: &DataType, references: &[u32]) -> Result<(), CallError> {
+    fn refuse_all(&self, data_type: &DataType, references: &[u32]) -> Result<(), CallError> {
         references.iter().try_for_each(|reference| self.find(data_type, *reference).map(|_| ()))
     }
 

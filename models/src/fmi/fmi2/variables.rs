@@ -19,10 +19,11 @@ const BOOLEAN: DataType =
     DataType { name: "a Boolean", carries: |kind| matches!(kind, Kind::Boolean), standard: FmiVersion::Two };
 const STRING: DataType = DataType { name: "a String", carries: |_| false, standard: FmiVersion::Two };
 
-/// A getter and a setter of one data type.
+/// A getter and a setter of one data type; how both convert, if any variable has it.
 macro_rules! accessors {
-    ($enter:ident, $get:ident $get_rule:ident, $set:ident $set_rule:ident, $type:ty, $data_type:ident,
-     $from:expr, $into:expr) => {
+    ($enter:ident, $data_type:ident: $type:ty,
+     $get:ident $get_rule:ident $get_values:ident($($from:expr)?),
+     $set:ident $set_rule:ident $set_values:ident($($into:expr)?)) => {
         /// # Safety
         /// A live handle, used by one thread at a time; both arrays hold `count` elements.
         #[unsafe(no_mangle)]
@@ -37,7 +38,7 @@ macro_rules! accessors {
             unsafe {
                 $enter(component, &may::$get_rule, |instance| {
                     let references = input(references, count, "vr")?;
-                    instance.get(&$data_type, references, output(values, count, "value")?, $from)
+                    instance.$get_values(&$data_type, references, output(values, count, "value")? $(, $from)?)
                 })
             }
         }
@@ -56,18 +57,19 @@ macro_rules! accessors {
             unsafe {
                 $enter(component, &may::$set_rule, |instance| {
                     let references = input(references, count, "vr")?;
-                    instance.set(&$data_type, references, input(values, count, "value")?, $into)
+                    instance.$set_values(&$data_type, references, input(values, count, "value")? $(, $into)?)
                 })
             }
         }
     };
 }
 
-accessors!(enter_to_copy, fmi2GetReal GET_REAL, fmi2SetReal SET_REAL, fmi2Real, REAL, |value| value, |value| value);
-accessors!(enter, fmi2GetInteger GET_INTEGER, fmi2SetInteger SET_INTEGER, fmi2Integer, INTEGER,
-    |value| value as fmi2Integer, f64::from);
-accessors!(enter, fmi2GetBoolean GET_BOOLEAN, fmi2SetBoolean SET_BOOLEAN, fmi2Boolean, BOOLEAN,
-    |value| fmi2Boolean::from(value != 0.0), |value| f64::from(u8::from(value != FMI2_FALSE)));
-// No model has strings, so nothing is ever converted.
-accessors!(enter, fmi2GetString GET_STRING, fmi2SetString SET_STRING, fmi2String, STRING,
-    |_| core::ptr::null(), |_| 0.0);
+accessors!(enter_to_copy, REAL: fmi2Real,
+    fmi2GetReal GET_REAL get(|value| value), fmi2SetReal SET_REAL set(|value| value));
+accessors!(enter, INTEGER: fmi2Integer,
+    fmi2GetInteger GET_INTEGER get(|value| value as fmi2Integer), fmi2SetInteger SET_INTEGER set(f64::from));
+accessors!(enter, BOOLEAN: fmi2Boolean,
+    fmi2GetBoolean GET_BOOLEAN get(|value| fmi2Boolean::from(value != 0.0)),
+    fmi2SetBoolean SET_BOOLEAN set(|value| f64::from(u8::from(value != FMI2_FALSE))));
+accessors!(enter, STRING: fmi2String,
+    fmi2GetString GET_STRING get_absent(), fmi2SetString SET_STRING set_absent());

@@ -15,69 +15,19 @@ fn require_length(got: usize, expected: usize) -> Result<(), CallError> {
     if got == expected { Ok(()) } else { Err(CallError::WrongLength { argument: "nValues", got, expected }) }
 }
 
-/// A getter and a setter of one data type.
-macro_rules! accessors {
-    ($enter:ident, $name:literal, $carries:expr, $get:ident $get_rule:ident, $set:ident $set_rule:ident, $type:ty,
-     $from:expr, $into:expr) => {
-        /// # Safety
-        /// A live handle, used by one thread at a time; the arrays hold as many elements as the counts say.
-        #[unsafe(no_mangle)]
-        pub unsafe extern "C-unwind" fn $get(
-            instance: fmi3Instance,
-            references: *const fmi3ValueReference,
-            count: usize,
-            values: *mut $type,
-            value_count: usize,
-        ) -> fmi3Status {
-            // SAFETY: the handle is live and used by one thread at a time; arrays are as long as their counts say, as
-            // the standard demands of importers.
-            unsafe {
-                $enter(instance, &may::$get_rule, |instance| {
-                    require_length(value_count, count)?;
-                    let references = input(references, count, "valueReferences")?;
-                    let values = output(values, count, "values")?;
-                    instance.get(
-                        &DataType { name: $name, carries: $carries, standard: FmiVersion::Three },
-                        references,
-                        values,
-                        $from,
-                    )
-                })
-            }
-        }
-
-        /// # Safety
-        /// A live handle, used by one thread at a time; the arrays hold as many elements as the counts say.
-        #[unsafe(no_mangle)]
-        pub unsafe extern "C-unwind" fn $set(
-            instance: fmi3Instance,
-            references: *const fmi3ValueReference,
-            count: usize,
-            values: *const $type,
-            value_count: usize,
-        ) -> fmi3Status {
-            // SAFETY: the handle is live and used by one thread at a time; arrays are as long as their counts say, as
-            // the standard demands of importers.
-            unsafe {
-                $enter(instance, &may::$set_rule, |instance| {
-                    require_length(value_count, count)?;
-                    let references = input(references, count, "valueReferences")?;
-                    let values = input(values, count, "values")?;
-                    instance.set(
-                        &DataType { name: $name, carries: $carries, standard: FmiVersion::Three },
-                        references,
-                        values,
-                        $into,
-                    )
-                })
-            }
-        }
-    };
+const fn data_type(name: &'static str, carries: fn(&Kind) -> bool) -> DataType {
+    DataType { name, carries, standard: FmiVersion::Three }
 }
 
-/// A getter and a setter of a data type that no variable has: nothing is ever converted.
-macro_rules! absent {
-    ($name:literal, $get:ident $get_rule:ident, $set:ident $set_rule:ident, $type:ty $(, $sizes:ty)?) => {
+const fn absent(name: &'static str) -> DataType {
+    data_type(name, |_| false)
+}
+
+/// A getter and a setter of one data type; how both convert, if any variable has it. Values of some types have sizes.
+macro_rules! accessors {
+    ($enter:ident, $data_type:expr, $type:ty $(, $sizes:ty)?;
+     $get:ident $get_rule:ident $get_values:ident($($from:expr)?),
+     $set:ident $set_rule:ident $set_values:ident($($into:expr)?)) => {
         /// # Safety
         /// A live handle, used by one thread at a time; the arrays hold as many elements as the counts say.
         #[unsafe(no_mangle)]
@@ -92,11 +42,11 @@ macro_rules! absent {
             // SAFETY: the handle is live and used by one thread at a time; arrays are as long as their counts say, as
             // the standard demands of importers.
             unsafe {
-                enter(instance, &may::$get_rule, |instance| {
+                $enter(instance, &may::$get_rule, |instance| {
                     require_length(value_count, count)?;
                     let references = input(references, count, "valueReferences")?;
-                    output(values, count, "values")?;
-                    instance.get_absent(&absent($name), references)
+                    let values = output(values, count, "values")?;
+                    instance.$get_values(&const { $data_type }, references, values $(, $from)?)
                 })
             }
         }
@@ -115,37 +65,42 @@ macro_rules! absent {
             // SAFETY: the handle is live and used by one thread at a time; arrays are as long as their counts say, as
             // the standard demands of importers.
             unsafe {
-                enter(instance, &may::$set_rule, |instance| {
+                $enter(instance, &may::$set_rule, |instance| {
                     require_length(value_count, count)?;
                     let references = input(references, count, "valueReferences")?;
-                    input(values, count, "values")?;
-                    instance.set_absent(&absent($name), references)
+                    let values = input(values, count, "values")?;
+                    instance.$set_values(&const { $data_type }, references, values $(, $into)?)
                 })
             }
         }
     };
 }
 
-fn absent(name: &'static str) -> DataType {
-    DataType { name, carries: |_| false, standard: FmiVersion::Three }
-}
-
-accessors!(enter_to_copy, "a Float64", |kind| matches!(kind, Kind::Real(_)),
-    fmi3GetFloat64 GET_FLOAT64, fmi3SetFloat64 SET_FLOAT64, f64, |value| value, |value| value);
-accessors!(enter, "an Int32", |kind| matches!(kind, Kind::Integer),
-    fmi3GetInt32 GET_INT32, fmi3SetInt32 SET_INT32, i32, |value| value as i32, f64::from);
+accessors!(enter_to_copy, data_type("a Float64", |kind| matches!(kind, Kind::Real(_))), f64;
+    fmi3GetFloat64 GET_FLOAT64 get(|value| value), fmi3SetFloat64 SET_FLOAT64 set(|value| value));
+accessors!(enter, data_type("an Int32", |kind| matches!(kind, Kind::Integer)), i32;
+    fmi3GetInt32 GET_INT32 get(|value| value as i32), fmi3SetInt32 SET_INT32 set(f64::from));
 // A number beyond 2^53 loses digits, but is no item of any enumeration either.
-accessors!(enter, "an Int64 or Enumeration", |kind| matches!(kind, Kind::Enumeration(_)),
-    fmi3GetInt64 GET_INT64, fmi3SetInt64 SET_INT64, i64, |value| value as i64, |value| value as f64);
-accessors!(enter, "a Boolean", |kind| matches!(kind, Kind::Boolean),
-    fmi3GetBoolean GET_BOOLEAN, fmi3SetBoolean SET_BOOLEAN, fmi3Boolean,
-    |value| fmi3Boolean::from(value != 0.0), |value| f64::from(u8::from(value != FMI3_FALSE)));
-absent!("a Float32", fmi3GetFloat32 GET_FLOAT32, fmi3SetFloat32 SET_FLOAT32, f32);
-absent!("an Int8", fmi3GetInt8 GET_INT8, fmi3SetInt8 SET_INT8, i8);
-absent!("a UInt8", fmi3GetUInt8 GET_UINT8, fmi3SetUInt8 SET_UINT8, u8);
-absent!("an Int16", fmi3GetInt16 GET_INT16, fmi3SetInt16 SET_INT16, i16);
-absent!("a UInt16", fmi3GetUInt16 GET_UINT16, fmi3SetUInt16 SET_UINT16, u16);
-absent!("a UInt32", fmi3GetUInt32 GET_UINT32, fmi3SetUInt32 SET_UINT32, u32);
-absent!("a UInt64", fmi3GetUInt64 GET_UINT64, fmi3SetUInt64 SET_UINT64, u64);
-absent!("a String", fmi3GetString GET_STRING, fmi3SetString SET_STRING, fmi3String);
-absent!("a Binary", fmi3GetBinary GET_BINARY, fmi3SetBinary SET_BINARY, fmi3Binary, usize);
+accessors!(enter, data_type("an Int64 or Enumeration", |kind| matches!(kind, Kind::Enumeration(_))), i64;
+    fmi3GetInt64 GET_INT64 get(|value| value as i64), fmi3SetInt64 SET_INT64 set(|value| value as f64));
+accessors!(enter, data_type("a Boolean", |kind| matches!(kind, Kind::Boolean)), fmi3Boolean;
+    fmi3GetBoolean GET_BOOLEAN get(|value| fmi3Boolean::from(value != 0.0)),
+    fmi3SetBoolean SET_BOOLEAN set(|value| f64::from(u8::from(value != FMI3_FALSE))));
+accessors!(enter, absent("a Float32"), f32;
+    fmi3GetFloat32 GET_FLOAT32 get_absent(), fmi3SetFloat32 SET_FLOAT32 set_absent());
+accessors!(enter, absent("an Int8"), i8;
+    fmi3GetInt8 GET_INT8 get_absent(), fmi3SetInt8 SET_INT8 set_absent());
+accessors!(enter, absent("a UInt8"), u8;
+    fmi3GetUInt8 GET_UINT8 get_absent(), fmi3SetUInt8 SET_UINT8 set_absent());
+accessors!(enter, absent("an Int16"), i16;
+    fmi3GetInt16 GET_INT16 get_absent(), fmi3SetInt16 SET_INT16 set_absent());
+accessors!(enter, absent("a UInt16"), u16;
+    fmi3GetUInt16 GET_UINT16 get_absent(), fmi3SetUInt16 SET_UINT16 set_absent());
+accessors!(enter, absent("a UInt32"), u32;
+    fmi3GetUInt32 GET_UINT32 get_absent(), fmi3SetUInt32 SET_UINT32 set_absent());
+accessors!(enter, absent("a UInt64"), u64;
+    fmi3GetUInt64 GET_UINT64 get_absent(), fmi3SetUInt64 SET_UINT64 set_absent());
+accessors!(enter, absent("a String"), fmi3String;
+    fmi3GetString GET_STRING get_absent(), fmi3SetString SET_STRING set_absent());
+accessors!(enter, absent("a Binary"), fmi3Binary, usize;
+    fmi3GetBinary GET_BINARY get_absent(), fmi3SetBinary SET_BINARY set_absent());
