@@ -5,11 +5,12 @@ use std::path::PathBuf;
 
 use libloading::Library;
 use maglev_fmu::fmi::{FmiVersion, function_names};
+use maglev_models::LIBRARY_NAME;
 
 /// Cargo leaves the shared library beside the tests.
 fn library() -> PathBuf {
     let directory = std::env::current_exe().unwrap().parent().unwrap().to_owned();
-    directory.join(format!("{DLL_PREFIX}maglev_fmu{DLL_SUFFIX}"))
+    directory.join(format!("{DLL_PREFIX}{LIBRARY_NAME}{DLL_SUFFIX}"))
 }
 
 #[test]
