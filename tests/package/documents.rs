@@ -232,7 +232,8 @@ fn accepts(name: &str, value: &str) -> bool {
 /// Code such as `observer.kind` and `observer.kind = kalman`.
 #[test]
 fn variables_in_the_pages_exist_and_take_these_values() {
-    const ENDINGS: [&str; 11] = ["fmu", "rs", "ssp", "ssv", "json", "html", "md", "py", "png", "toml", "csv"];
+    const ENDINGS: [&str; 12] =
+        ["fmu", "rs", "ssp", "ssv", "json", "html", "md", "py", "png", "toml", "csv", "txt"];
     let is_name_letter =
         |letter: char| letter.is_ascii_lowercase() || letter.is_ascii_digit() || "._[]".contains(letter);
     let mut number = 0;
