@@ -46,6 +46,6 @@ pub use platform::Platform;
 pub use reference_run::{ReferenceRun, Table};
 pub use registration::dependencies;
 pub use related_files::{DIRECTORY as RELATED_FILES, INPUT as REFERENCE_INPUT, OUTPUT as REFERENCE_OUTPUT};
-pub use third_party::{PATH as THIRD_PARTY_PATH, ThirdPartyError, third_party};
+pub use third_party::{PATH as THIRD_PARTY_PATH, STANDARD_LIBRARY_CRATES, ThirdPartyError, third_party};
 
 pub use system_structure::{SystemForm, contents as system_contents};

@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package, PackageId, TargetKind};
-use spdx::Expression;
+use spdx::{Expression, ParseMode};
 use thiserror::Error;
 
 use super::licenses;
@@ -39,18 +39,20 @@ const STANDARD_LIBRARY_COPYRIGHT: &str = "Copyright (c) The Rust Project Contrib
 
 /// Crates that the standard library brings along in compiled form, which no tree of dependencies has either; their versions
 /// are those of the compiler that built the library.
-pub const STANDARD_LIBRARY_CRATES: [(&str, &str, &str); 9] = [
+pub const STANDARD_LIBRARY_CRATES: [(&str, &str, &str); 10] = [
     ("addr2line", "Apache-2.0 OR MIT", "https://github.com/gimli-rs/addr2line"),
     ("adler2", "0BSD OR MIT OR Apache-2.0", "https://github.com/oyvindln/adler2"),
     ("cfg-if", "MIT OR Apache-2.0", "https://github.com/rust-lang/cfg-if"),
     ("gimli", "MIT OR Apache-2.0", "https://github.com/gimli-rs/gimli"),
     ("hashbrown", "MIT OR Apache-2.0", "https://github.com/rust-lang/hashbrown"),
     ("libc", "MIT OR Apache-2.0", "https://github.com/rust-lang/libc"),
+    ("memchr", "Unlicense OR MIT", "https://github.com/BurntSushi/memchr"),
     ("miniz_oxide", "MIT OR Zlib OR Apache-2.0", "https://github.com/Frommi/miniz_oxide"),
     ("object", "Apache-2.0 OR MIT", "https://github.com/gimli-rs/object"),
     ("rustc-demangle", "MIT/Apache-2.0", "https://github.com/rust-lang/rustc-demangle"),
 ];
-/// Licence under which all of those are taken, and words of its text.
+/// Licence under which those are taken that allow it, and words of its text. Others are taken as the crates of that name in
+/// the tree of dependencies are, whose texts are theirs.
 const THEIR_LICENSE: (&str, &str) = ("Apache-2.0", "END OF TERMS AND CONDITIONS");
 
 /// Why the file could not be written.
@@ -64,6 +66,10 @@ pub enum ThirdPartyError {
         "no crate carries the text of the {license} licence, under which crates of the standard library are taken"
     )]
     NoSharedText { license: &'static str },
+    #[error(
+        "the standard library holds {name}, whose licence text no crate of that name carries: none is in the tree"
+    )]
+    NotInTree { name: &'static str },
     #[error("{name} {version} declares the licence {declared:?}: expected one that allows MIT or Apache-2.0")]
     License { name: String, version: String, declared: String },
     #[error("{name} {version} carries no text of its {license} licence: expected one of {expected:?} in {}", .directory.display())]
@@ -108,13 +114,21 @@ pub fn third_party(root: &Path) -> Result<String, ThirdPartyError> {
     let standard = licenses::LICENSE.replace(licenses::COPYRIGHT, STANDARD_LIBRARY_COPYRIGHT);
     texts.entry(normalised(&standard)).or_default().push(STANDARD_LIBRARY.title());
     rows.push(STANDARD_LIBRARY);
-    let (license, words) = THEIR_LICENSE;
-    let titles = texts.iter_mut().find(|(text, _)| text.contains(words)).map(|(_, titles)| titles);
-    let titles = titles.ok_or(ThirdPartyError::NoSharedText { license })?;
+    let (shared_license, words) = THEIR_LICENSE;
+    let shared_text = texts.keys().find(|text| text.contains(words)).cloned();
+    let shared_text = shared_text.ok_or(ThirdPartyError::NoSharedText { license: shared_license })?;
     for (name, declared, repository) in STANDARD_LIBRARY_CRATES {
+        let (license, text) = if allows(declared, shared_license) {
+            (shared_license, shared_text.clone())
+        } else {
+            let package = metadata.packages.iter().find(|package| package.name.as_str() == name);
+            let package = package.ok_or(ThirdPartyError::NotInTree { name })?;
+            let license = accepted_license(package)?;
+            (license, text(package, license)?)
+        };
         let name = Cow::Owned(format!("Rust standard library: {name}"));
         let row = Crate { name, version: String::new(), declared, license, repository };
-        titles.push(row.title());
+        texts.entry(text).or_default().push(row.title());
         rows.push(row);
     }
     Ok(document(&rows, &texts))
@@ -148,29 +162,33 @@ fn linked_packages(metadata: &Metadata) -> Result<Vec<&Package>, ThirdPartyError
     Ok(packages)
 }
 
-/// What the list says of a package, with the first accepted licence that its own allows.
+/// What the list says of a package.
 fn row(package: &Package) -> Result<Crate<'_>, ThirdPartyError> {
-    let declared = package.license.as_deref().unwrap_or_default();
-    let allows = |license: &str| {
-        let wanted = spdx::license_id(license);
-        let is_it = |requirement: &spdx::LicenseReq| requirement.license.id() == wanted;
-        Expression::parse(declared).is_ok_and(|expression| expression.evaluate(is_it))
-    };
-    let (license, _) = ACCEPTED.into_iter().find(|(license, _)| allows(license)).ok_or_else(|| {
-        ThirdPartyError::License {
-            name: package.name.to_string(),
-            version: package.version.to_string(),
-            declared: declared.to_owned(),
-        }
-    })?;
-    let repository = package.repository.as_deref().unwrap_or_default();
     Ok(Crate {
         name: Cow::Borrowed(&package.name),
         version: package.version.to_string(),
-        declared,
-        license,
-        repository,
+        declared: package.license.as_deref().unwrap_or_default(),
+        license: accepted_license(package)?,
+        repository: package.repository.as_deref().unwrap_or_default(),
     })
+}
+
+/// The first accepted licence that the package's own allows.
+fn accepted_license(package: &Package) -> Result<&'static str, ThirdPartyError> {
+    let declared = package.license.as_deref().unwrap_or_default();
+    let mut accepted = ACCEPTED.into_iter().map(|(license, _)| license);
+    accepted.find(|license| allows(declared, license)).ok_or_else(|| ThirdPartyError::License {
+        name: package.name.to_string(),
+        version: package.version.to_string(),
+        declared: declared.to_owned(),
+    })
+}
+
+/// Whether code may be taken under `license` where its own licence is the one declared, a slash for "or" included.
+fn allows(declared: &str, license: &str) -> bool {
+    let wanted = spdx::license_id(license);
+    let is_it = |requirement: &spdx::LicenseReq| requirement.license.id() == wanted;
+    Expression::parse_mode(declared, ParseMode::LAX).is_ok_and(|expression| expression.evaluate(is_it))
 }
 
 /// The text of one of the accepted licences as the package carries it.

@@ -3,9 +3,9 @@
 use core::ptr::{null, null_mut};
 
 use maglev_fmu::fmi::fmi3::*;
-use maglev_fmu::model::Edition;
+use maglev_fmu::model::{Edition, models};
 
-use super::harness::clocked::{Choices, co_simulation_of, sampled_models};
+use super::harness::clocked::{Choices, co_simulation_of, go_on, sampled_models};
 use super::harness::{Component, ERROR, OK, Phase, Recorder, Standard, fmi3_logger, token};
 
 const EVENTS: Choices = Choices { event_mode: true, early_return: true, intermediate_update: None };
@@ -82,6 +82,54 @@ fn no_package_is_named_where_none_offers_what_is_asked_for() {
         text.ends_with("does not offer scheduled execution, only co-simulation, model exchange"),
         "{text}"
     );
+}
+
+/// Guards: a recorder that registers every output, clocks among them, and got no instance.
+#[test]
+fn every_variable_of_the_edition_may_be_registered_for_intermediate_update() {
+    let register = |model: &str, edition: Edition, references: &[u32], recorder: &Recorder| {
+        let (token, environment) = (token(model, edition), recorder.environment());
+        let (log, update) = (Some(fmi3_logger as _), Some(go_on as _));
+        let (required, count) = (references.as_ptr(), references.len());
+        // SAFETY: C strings, an array as long as its count says, a living recorder.
+        let handle = unsafe {
+            fmi3InstantiateCoSimulation(
+                c"x".as_ptr(),
+                token.as_ptr(),
+                null(),
+                0,
+                1,
+                0,
+                0,
+                required,
+                count,
+                environment,
+                log,
+                update,
+            )
+        };
+        if !handle.is_null() {
+            // SAFETY: a live handle that is not used again.
+            unsafe { fmi3FreeInstance(handle) };
+        }
+        !handle.is_null()
+    };
+    for model in models().map(|model| model.description) {
+        for edition in Edition::ALL.into_iter().filter(|edition| edition.suits(model)) {
+            let count = (model.variables.len() + edition.clocks(model).count()) as u32;
+            let recorder = Recorder::default();
+            let all: Vec<u32> = (0..count).collect();
+            assert!(
+                register(model.name, edition, &all, &recorder),
+                "{}: {:?}",
+                model.name,
+                recorder.messages()
+            );
+            assert!(!register(model.name, edition, &[count], &recorder), "{}", model.name);
+            let said = format!("value reference {count} is unknown: expected 0 to {}", count - 1);
+            assert!(recorder.messages().pop().unwrap().text.ends_with(&said), "{:?}", recorder.messages());
+        }
+    }
 }
 
 #[test]

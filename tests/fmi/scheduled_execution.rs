@@ -65,7 +65,10 @@ fn intervals_follow_from_the_sample_time() {
         (status, interval, qualifier)
     };
     component.recorder.clear();
-    component.assert_refused(interval_of(&component, 1).0, &["ticked"]);
+    component.assert_refused(
+        interval_of(&component, 1).0,
+        &["ticked", "expected one that the importer activates"],
+    );
     assert_eq!(component.exit_initialization(), OK);
     component.recorder.clear();
     component.assert_refused(interval_of(&component, 0).0, &["clock activation mode", "IntervalDecimal"]);

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use maglev_fmu::package::{THIRD_PARTY_PATH, ThirdPartyError, third_party};
+use maglev_fmu::package::{STANDARD_LIBRARY_CRATES, THIRD_PARTY_PATH, ThirdPartyError, third_party};
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -91,6 +91,48 @@ fn crates_within_the_standard_library_are_listed() {
     for name in found {
         assert!(text.contains(&format!("Rust standard library: {name} ")), "{name}");
     }
+}
+
+/// Guards: a crate that leaves no trace in messages. Whatever the compiler brings along in compiled form may be linked, but for
+/// what tests and macros are made with.
+#[test]
+fn every_crate_beside_the_standard_library_is_listed() {
+    const OF_THE_RUST_PROJECT: [&str; 14] = [
+        "alloc",
+        "compiler_builtins",
+        "core",
+        "panic_abort",
+        "panic_unwind",
+        "proc_macro",
+        "profiler_builtins",
+        "rustc_std_workspace_alloc",
+        "rustc_std_workspace_core",
+        "rustc_std_workspace_std",
+        "std",
+        "std_detect",
+        "sysroot",
+        "unwind",
+    ];
+    const OF_TESTS_AND_MACROS: [&str; 3] = ["getopts", "rustc_literal_escaper", "test"];
+    let compiler = std::env::var("RUSTC").unwrap_or("rustc".to_owned());
+    let output = Command::new(compiler).args(["--print", "target-libdir"]).output().unwrap();
+    let directory = String::from_utf8(output.stdout).unwrap();
+    let names: BTreeSet<String> = fs::read_dir(directory.trim())
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .filter_map(|file| {
+            Some(file.strip_suffix(".rlib")?.strip_prefix("lib")?.rsplit_once('-')?.0.to_owned())
+        })
+        .collect();
+    assert!(names.contains("std") && names.contains("memchr"), "{names:?}");
+    let listed = STANDARD_LIBRARY_CRATES.map(|(name, ..)| name.replace('-', "_"));
+    let is_known = |name: &str| {
+        OF_THE_RUST_PROJECT.contains(&name)
+            || OF_TESTS_AND_MACROS.contains(&name)
+            || listed.iter().any(|known| known == name)
+    };
+    let missing: Vec<_> = names.iter().filter(|name| !is_known(name)).collect();
+    assert!(missing.is_empty(), "{missing:?}");
 }
 
 #[test]

@@ -27,6 +27,8 @@ pub enum CallError {
     WrongType { name: &'static str, reference: u32, is: &'static str, asked: &'static str },
     #[error("{name} is {why} and cannot be set in the phase \"{phase}\"")]
     NotSettable { name: &'static str, why: &'static str, phase: &'static str },
+    #[error("{name} is a clock that the model itself activates: expected one that the importer activates")]
+    NoInputClock { name: &'static str },
     #[error(transparent)]
     Value(#[from] ValueError),
     #[error("{argument} = {value} s: expected {expected}")]

@@ -29,9 +29,9 @@ pub(super) struct IntermediateUpdate {
 pub(super) struct RegisteredVariables(u128);
 
 impl RegisteredVariables {
-    /// The references that stand for a row of a table with `row_count` rows; the first that does not is an error.
-    pub fn new(references: &[u32], row_count: usize) -> Result<Self, CallError> {
-        let largest = row_count.min(u128::BITS as usize) - 1;
+    /// The references that stand for one of `count` variables, clocks among them; the first that does not is an error.
+    pub fn new(references: &[u32], count: usize) -> Result<Self, CallError> {
+        let largest = count.min(u128::BITS as usize) - 1;
         let mut rows = 0;
         for &reference in references {
             if reference as usize > largest {

@@ -82,9 +82,7 @@ impl Instance {
 
     /// Runs the tick that a scheduler calls for at `time` \[s\].
     pub(super) fn activate_model_partition(&mut self, clock: u32, time: f64) -> Result<(), CallError> {
-        if self.find_clock(clock)? != TICK {
-            return Err(self.no_input_clock());
-        }
+        self.require_input_clock(clock)?;
         let now = self.state.communication.now();
         if !time.is_finite() || time < now || (time == now && self.state.clocks.was_activated) {
             return Err(CallError::ActivationTime { got: time, last: now });
@@ -120,9 +118,12 @@ impl Instance {
         found.ok_or_else(|| self.unknown_reference(reference))
     }
 
-    fn no_input_clock(&self) -> CallError {
-        let why = "a clock that the model itself activates";
-        CallError::NotSettable { name: CLOCKS[TICKED].name, why, phase: self.state.phase.name() }
+    /// Only `tick` is the importer's.
+    fn require_input_clock(&self, reference: u32) -> Result<(), CallError> {
+        match self.find_clock(reference)? {
+            TICK => Ok(()),
+            clock => Err(CallError::NoInputClock { name: CLOCKS[clock].name }),
+        }
     }
 
     /// Activation states. In scheduled execution `ticked` tells of each activation once.
@@ -142,9 +143,7 @@ impl Instance {
     pub(super) fn set_clocks(&mut self, references: &[u32], values: &[u8]) -> Result<(), CallError> {
         let mut is_tick_active = self.state.clocks.is_tick_active;
         for (reference, value) in references.iter().zip(values) {
-            if self.find_clock(*reference)? != TICK {
-                return Err(self.no_input_clock());
-            }
+            self.require_input_clock(*reference)?;
             let now = self.state.communication.now();
             let clock = sampled(&mut *self.model)?.clock();
             match (*value != 0, clock.is_due()) {
@@ -163,9 +162,7 @@ impl Instance {
 
     /// When an input clock ticks.
     pub(super) fn timing(&mut self, reference: u32) -> Result<Timing, CallError> {
-        if self.find_clock(reference)? != TICK {
-            return Err(self.no_input_clock());
-        }
+        self.require_input_clock(reference)?;
         self.refresh_before_first_step()?;
         let start_time = self.state.start_time;
         let clock = sampled(&mut *self.model)?.clock();
@@ -185,9 +182,7 @@ impl Instance {
         // A model without clocks has no reference that passes.
         let sample_time = self.model.description().find(SAMPLE_TIME);
         for (reference, interval) in references.iter().zip(intervals.clone()) {
-            if self.find_clock(*reference)? != TICK {
-                return Err(self.no_input_clock());
-            }
+            self.require_input_clock(*reference)?;
             sample_time.map_or(Ok(()), |(_, variable)| variable.check(interval))?;
         }
         if let (Some((row, _)), Some(interval)) = (sample_time, intervals.last()) {

@@ -84,7 +84,9 @@ pub unsafe extern "C-unwind" fn fmi3InstantiateCoSimulation(
             "requiredIntermediateVariables",
         );
         create(&request, |instance| {
-            let registered = RegisteredVariables::new(references?, instance.variables.len())?;
+            // Recorders register all outputs, clocks among them.
+            let count = instance.variables.len() + instance.clocks().count();
+            let registered = RegisteredVariables::new(references?, count)?;
             // An importer without intermediate variables does not intend to use intermediate update (section 2.3.1),
             // but has it early return to ask for.
             let is_of_use = required_intermediate_variable_count > 0 || may_return_early;
